@@ -1,0 +1,23 @@
+//! A tyre's tread block that sticks and slips on the road, small enough to simulate in real time.
+//!
+//! Data flows one way, in the order of the modules:
+//! parameters → mesh → finite elements → reduction → contact → dynamics → block; the C interface
+//! (`fmi`), the command line, the studies and the gap diagnosis stand beside each other on the block.
+
+#![deny(unsafe_code)]
+#![warn(missing_docs)]
+
+pub mod error;
+pub mod params;
+pub mod effects;
+pub mod mesh;
+pub mod fe;
+pub mod reduction;
+pub mod contact;
+pub mod drive;
+pub mod dynamics;
+pub mod block;
+
+pub use block::TreadBlock;
+pub use error::{Fault, Problem};
+pub use params::Params;

@@ -1,0 +1,165 @@
+//! TOML ↔ parameters: tables nest as the dotted names do, numbers are in SI units.
+
+use super::table::{self, Kind, ParamSpec, Value};
+use super::{check, Params};
+use crate::error::{Fault, Problem};
+
+/// Reads parameters from a TOML text; keys not given keep their defaults.
+///
+/// # Errors
+/// All unknown keys, values of the wrong kind and values out of range, at once.
+pub fn from_toml(text: &str) -> Result<Params, Fault> {
+    let document: toml::Table = text.parse().map_err(|e: toml::de::Error| syntax(&e))?;
+    let (params, mut problems) = from_table(&document, Params::default());
+    problems.extend(check::problems(&params));
+    if problems.is_empty() {
+        Ok(params)
+    } else {
+        Err(Fault::Invalid(problems))
+    }
+}
+
+/// Sets every parameter that `document` names on top of `params`; returns what went wrong.
+pub fn from_table(document: &toml::Table, mut params: Params) -> (Params, Vec<Problem>) {
+    let mut problems = Vec::new();
+    for (name, value) in flatten("", document) {
+        match table::find(&name) {
+            Some(spec) => problems.extend(assign(spec, value, &mut params)),
+            None => problems.push(unknown(&name, value)),
+        }
+    }
+    (params, problems)
+}
+
+/// Sets one parameter from text such as `friction.mu_inf=0.6`, as the command line gives it.
+pub fn assign_text(assignment: &str, params: &mut Params) -> Option<Problem> {
+    let Some((name, text)) = assignment.split_once('=') else {
+        return Some(Problem::new(
+            "assignment",
+            assignment,
+            "name=value",
+            "write for example friction.mu_inf=0.6",
+        ));
+    };
+    let (name, text) = (name.trim(), text.trim());
+    let value = text
+        .parse::<i64>()
+        .map(toml::Value::Integer)
+        .or_else(|_| text.parse::<f64>().map(toml::Value::Float))
+        .or_else(|_| text.parse::<bool>().map(toml::Value::Boolean))
+        .unwrap_or_else(|_| toml::Value::String(text.trim_matches('"').to_string()));
+    match table::find(name) {
+        Some(spec) => assign(spec, &value, params),
+        None => Some(unknown(name, &value)),
+    }
+}
+
+/// Writes parameters as TOML, with unit and meaning as comments.
+pub fn to_toml(params: &Params) -> String {
+    let mut out = String::new();
+    let mut section = "";
+    for spec in table::specs() {
+        let Some((head, key)) = spec.name.rsplit_once('.') else { continue };
+        if head != section {
+            out.push_str(&format!("\n[{head}]\n"));
+            section = head;
+        }
+        let value = (spec.get)(params);
+        let text = match (&value, spec.kind) {
+            (Value::Text(t), _) => format!("{t:?}"),
+            (_, Kind::Enumeration { .. }) => format!("{:?}", table::show(spec, &value)),
+            (Value::Real(x), _) => format!("{x:?}"),
+            _ => table::show(spec, &value),
+        };
+        let unit = match spec.kind {
+            Kind::Real { unit, .. } if unit != "1" => format!("[{unit}] "),
+            _ => String::new(),
+        };
+        out.push_str(&format!("{key} = {text}  # {unit}{}\n", spec.doc));
+    }
+    out.trim_start().to_string()
+}
+
+fn assign(spec: &ParamSpec, value: &toml::Value, params: &mut Params) -> Option<Problem> {
+    let Some(value) = convert(spec, value) else {
+        return Some(Problem::new(
+            spec.name,
+            value.to_string(),
+            match spec.kind {
+                Kind::Enumeration { items, .. } => {
+                    items.iter().map(|item| item.name).collect::<Vec<_>>().join(", ")
+                }
+                kind => check::kind_name(kind).to_string(),
+            },
+            "give a value of that kind",
+        ));
+    };
+    (spec.set)(params, &value);
+    None
+}
+
+fn convert(spec: &ParamSpec, value: &toml::Value) -> Option<Value> {
+    match (spec.kind, value) {
+        (Kind::Real { .. }, toml::Value::Float(x)) => Some(Value::Real(*x)),
+        (Kind::Real { .. }, toml::Value::Integer(i)) => Some(Value::Real(*i as f64)),
+        (Kind::Integer { .. }, toml::Value::Integer(i)) => i32::try_from(*i).ok().map(Value::Integer),
+        (Kind::Boolean, toml::Value::Boolean(b)) => Some(Value::Boolean(*b)),
+        (Kind::Text, toml::Value::String(t)) => Some(Value::Text(t.clone())),
+        (Kind::Enumeration { items, .. }, toml::Value::String(t)) => items
+            .iter()
+            .position(|item| item.name == t)
+            .map(|at| Value::Integer(at as i32 + 1)),
+        _ => None,
+    }
+}
+
+fn flatten<'a>(prefix: &str, table: &'a toml::Table) -> Vec<(String, &'a toml::Value)> {
+    let mut out = Vec::new();
+    for (key, value) in table {
+        let name = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
+        match value {
+            toml::Value::Table(inner) => out.extend(flatten(&name, inner)),
+            _ => out.push((name, value)),
+        }
+    }
+    out
+}
+
+fn unknown(name: &str, value: &toml::Value) -> Problem {
+    let near = table::specs()
+        .map(|s| s.name)
+        .min_by_key(|known| distance(known, name))
+        .unwrap_or("block.length");
+    Problem::new(
+        name,
+        value.to_string(),
+        "a parameter of the model",
+        format!("did you mean {near}? `tread fmu describe` lists all names"),
+    )
+}
+
+/// Levenshtein distance of two names.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, cb) in b.iter().enumerate() {
+            let cost = diagonal + usize::from(ca != *cb);
+            diagonal = row[j + 1];
+            row[j + 1] = cost.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+/// A TOML syntax error as a fault, with line and column in the parser's own words.
+pub fn syntax(error: &toml::de::Error) -> Fault {
+    Fault::one(Problem::new(
+        "TOML",
+        error.to_string().trim().to_string(),
+        "valid TOML",
+        "mend the line that the message points at",
+    ))
+}
