@@ -1,29 +1,73 @@
 //! The assembled tread block: parameters in, motion and load per communication step in, outputs out.
 
+mod build;
+mod observe;
 mod signals;
 
+pub use build::Shape;
 pub use signals::{InputSpec, OutputSpec, Outputs, INPUTS, OUTPUTS, STATIONS};
 
+use crate::contact::{wear, Face};
 use crate::drive::{Pose, Segment};
-use crate::error::Fault;
-use crate::params::Params;
+use crate::dynamics::{
+    equilibrium, kinematics, Integrator, Kinematics, Ledger, Linear, Stage, State, Statistics,
+};
+use crate::error::{Fault, Problem};
+use crate::params::{check, table, Params, Variability, Wear};
+use crate::reduction::Reduction;
+use observe::Stations;
+use std::sync::Arc;
 
 /// A tread block: reduced finite elements on a rough road.
 #[derive(Clone, Debug)]
 pub struct TreadBlock {
     params: Params,
-    time: f64,
+    reduction: Arc<Reduction>,
+    linear: Linear,
+    face: Face,
+    state: State,
+    integrator: Integrator,
+    stations: Stations,
+    wear_mass: f64,
+    /// Prescribed motion at the time reached.
+    motion: Kinematics,
     outputs: Outputs,
 }
 
 impl TreadBlock {
-    /// Builds the block; expensive (finite elements, reduction), done once per geometry.
+    /// Builds the block; the finite elements and their reduction take most of the time.
     ///
     /// # Errors
-    /// [`Fault::Invalid`] with all problems of the parameters.
+    /// [`Fault::Invalid`] with all problems of the parameters, [`Fault::File`] for a friction table.
     pub fn new(params: &Params) -> Result<Self, Fault> {
-        crate::params::check::checked(params)?;
-        Ok(Self { params: params.clone(), time: 0.0, outputs: Outputs::default() })
+        check::checked(params)?;
+        Self::with_reduction(params, Arc::new(Shape::of(params).reduce()?))
+    }
+
+    /// Builds the block on a reduction made before by [`Shape::reduce`]; blocks of one [`Shape`] may
+    /// differ in all else.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_reduction(params: &Params, reduction: Arc<Reduction>) -> Result<Self, Fault> {
+        check::checked(params)?;
+        let linear = build::linear(&reduction, params);
+        let face = build::face(&reduction, params)?;
+        let integrator = Integrator::new(&linear, build::settings(&params.solver));
+        let mut block = Self {
+            state: State::new(&linear),
+            stations: Stations::along(&reduction.mesh),
+            params: params.clone(),
+            reduction,
+            linear,
+            face,
+            integrator,
+            wear_mass: 0.0,
+            motion: Kinematics::default(),
+            outputs: Outputs::default(),
+        };
+        block.initialize(0.0, Pose { z: block.params.block.height, ..Pose::default() })?;
+        Ok(block)
     }
 
     /// Puts the block at rest at `time` [s]: in `load` drive in frictionless static equilibrium under
@@ -33,8 +77,13 @@ impl TreadBlock {
     /// # Errors
     /// [`Fault::NoConvergence`] where there is no equilibrium.
     pub fn initialize(&mut self, time: f64, pose: Pose) -> Result<(), Fault> {
-        self.time = time;
-        self.outputs.carriage_z = pose.z;
+        self.state = State::new(&self.linear);
+        self.state.time = time;
+        self.wear_mass = 0.0;
+        self.integrator = Integrator::new(&self.linear, build::settings(&self.params.solver));
+        equilibrium::settle(&self.linear, &self.face, pose, &mut self.state)?;
+        self.motion = kinematics(&Segment::still(pose), 0.0);
+        self.observe();
         Ok(())
     }
 
@@ -44,15 +93,28 @@ impl TreadBlock {
     /// [`Fault::NoConvergence`], [`Fault::NotFinite`]; the block then stands at the last time that was
     /// reached, see [`Self::time`].
     pub fn advance(&mut self, h: f64, segment: &Segment) -> Result<(), Fault> {
-        self.time += h;
-        let pose = segment.pose(h);
-        self.outputs.carriage_z = pose.z;
-        Ok(())
+        let start = self.state.time;
+        let (law, density) = (&self.params.wear, self.params.rubber.density);
+        let (area, wear_mass) = (&self.face.area, &mut self.wear_mass);
+        let outcome = self.integrator.advance(
+            &self.linear,
+            &self.face,
+            &mut self.state,
+            h,
+            segment,
+            &mut |step, stage, state| {
+                *wear_mass += wear_off(law, density, area, step, stage, &mut state.worn);
+            },
+        );
+        let reached = self.state.time - start;
+        self.motion = kinematics(segment, reached);
+        self.observe();
+        outcome
     }
 
     /// Time reached [s].
     pub fn time(&self) -> f64 {
-        self.time
+        self.state.time
     }
 
     /// Outputs at the time reached.
@@ -65,27 +127,95 @@ impl TreadBlock {
         &self.params
     }
 
+    /// The reduced model that the block was built on.
+    pub fn reduction(&self) -> &Arc<Reduction> {
+        &self.reduction
+    }
+
+    /// How much work was done since initialization.
+    pub fn statistics(&self) -> Statistics {
+        self.integrator.statistics()
+    }
+
+    /// Opens an energy ledger at the state as it stands.
+    pub fn open_ledger(&mut self) {
+        let compression = self.compression();
+        self.integrator.open_ledger(&self.linear, &self.face, &self.state, &compression);
+    }
+
+    /// The energy ledger, if one was opened.
+    pub fn ledger(&self) -> Option<&Ledger> {
+        self.integrator.ledger()
+    }
+
     /// Changes tunable parameters while the block moves.
     ///
     /// # Errors
     /// [`Fault::Invalid`] for values out of range and for fixed parameters that differ.
     pub fn retune(&mut self, params: &Params) -> Result<(), Fault> {
-        crate::params::check::checked(params)?;
+        let mut problems = check::problems(params);
+        for spec in table::specs().filter(|s| s.variability == Variability::Fixed) {
+            if (spec.get)(params) != (spec.get)(&self.params) {
+                problems.push(Problem::new(
+                    spec.name,
+                    table::show(spec, &(spec.get)(params)),
+                    format!("{} as at initialization", table::show(spec, &(spec.get)(&self.params))),
+                    "set fixed parameters before initialization",
+                ));
+            }
+        }
+        if !problems.is_empty() {
+            return Err(Fault::Invalid(problems));
+        }
+        self.face = build::face(&self.reduction, params)?;
         self.params = params.clone();
         Ok(())
     }
 
     /// Everything that changes while the block moves, as plain numbers in a fixed order and count.
-    pub fn save(&self, state: &mut Vec<f64>) {
-        state.push(self.time);
+    pub fn save(&self, out: &mut Vec<f64>) {
+        out.extend([self.wear_mass, self.integrator.last_h()]);
+        out.extend(self.motion.to_numbers());
+        self.state.save(out);
     }
 
-    /// Restores what [`Self::save`] wrote; `false` if the count does not fit.
-    pub fn restore(&mut self, state: &[f64]) -> bool {
-        if let [time] = state {
-            self.time = *time;
-            return true;
+    /// Restores what [`Self::save`] wrote; `false`, with the block unchanged, if the count does not
+    /// fit.
+    pub fn restore(&mut self, from: &[f64]) -> bool {
+        let mut state = self.state.clone();
+        let Some((head, rest)) = from.split_at_checked(2) else { return false };
+        let Some((motion, rest)) = rest.split_first_chunk() else { return false };
+        if !state.restore(rest).is_some_and(<[f64]>::is_empty) {
+            return false;
         }
-        false
+        self.wear_mass = head[0];
+        self.integrator.resume(head[1]);
+        self.motion = Kinematics::from_numbers(motion);
+        self.state = state;
+        self.observe();
+        true
     }
+}
+
+/// Wears the nodes over a step of `h` [s]; returns the mass worn off [kg].
+fn wear_off(
+    law: &Wear,
+    density: f64,
+    area: &[f64],
+    h: f64,
+    stage: &Stage,
+    worn: &mut [f64],
+) -> f64 {
+    let traction = &stage.traction;
+    let mut mass = 0.0;
+    for i in 0..worn.len() {
+        if traction.pressure[i] > 0.0 {
+            let mu = traction.tangential[i] / traction.normal[i];
+            let depth =
+                h * wear::depth_rate(law, density, mu, traction.pressure[i], stage.slip[i]);
+            worn[i] += depth;
+            mass += depth * density * area[i];
+        }
+    }
+    mass
 }

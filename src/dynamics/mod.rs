@@ -1,1 +1,18 @@
-//! dynamics
+//! Motion of the reduced block: decoupled linear part, implicit contact and friction, adaptive steps.
+
+pub mod dense;
+pub mod energy;
+pub mod equilibrium;
+pub mod linear;
+pub mod matrices;
+pub mod state;
+pub mod stage;
+pub mod step;
+pub mod tr_bdf2;
+
+pub use energy::Ledger;
+pub use linear::{BaseDof, Linear};
+pub use stage::{Kinematics, Stage};
+pub use state::State;
+pub use step::{Integrator, Settings, Statistics};
+pub use tr_bdf2::kinematics;

@@ -1,1 +1,8 @@
-//! reduction
+//! Craig-Bampton reduction: contact degrees of freedom stay physical, statics stay exact.
+
+mod craig_bampton;
+mod decouple;
+mod fixed_interface;
+
+pub use craig_bampton::CraigBampton;
+pub use decouple::Reduction;

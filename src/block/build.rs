@@ -1,0 +1,131 @@
+//! Parameters → mesh → reduction → linear part, contact face and solver settings.
+
+use crate::contact::friction::Law;
+use crate::contact::friction_table::Table;
+use crate::contact::Face;
+use crate::dynamics::{Linear, Settings};
+use crate::error::{Fault, Problem};
+use crate::mesh::Mesh;
+use crate::params::{FrictionForm, Params, Plane, Solver};
+use crate::reduction::Reduction;
+
+/// Fixed-interface modes are kept up to this multiple of `solver.frequency_bound`, so that the
+/// eigenfrequencies below the bound itself are exact within 0.1 %.
+const BOUND_MARGIN: f64 = 1.5;
+/// Length of an element along the face [m], unless given.
+const ELEMENT_LENGTH: f64 = 2.5e-3;
+/// Height of an element [m], unless given.
+const ELEMENT_HEIGHT: f64 = 2.2e-3;
+
+/// What the reduction depends on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shape {
+    /// Length of the block [m].
+    pub length: f64,
+    /// Height of the block [m].
+    pub height: f64,
+    /// Elements along the face and up.
+    pub elements: (usize, usize),
+    /// Poisson's ratio [-].
+    pub poisson_ratio: f64,
+    /// Plane stress or strain.
+    pub plane: Plane,
+    /// Fixed-interface modes up to this ω²ρ/E [1/m²].
+    pub bound: f64,
+}
+
+impl Shape {
+    /// The shape that the parameters describe.
+    pub fn of(params: &Params) -> Self {
+        let (block, rubber, solver) = (&params.block, &params.rubber, &params.solver);
+        let count = |given: usize, size: f64, element: f64, least: usize| match given {
+            0 => ((size / element).round() as usize).max(least),
+            given => given,
+        };
+        let omega = std::f64::consts::TAU * BOUND_MARGIN * solver.frequency_bound;
+        Self {
+            length: block.length,
+            height: block.height,
+            elements: (
+                count(solver.elements_along, block.length, ELEMENT_LENGTH, 4),
+                count(solver.elements_up, block.height, ELEMENT_HEIGHT, 3),
+            ),
+            poisson_ratio: rubber.poisson_ratio,
+            plane: rubber.plane,
+            bound: omega * omega * rubber.density / rubber.young_modulus,
+        }
+    }
+
+    /// Meshes and reduces.
+    ///
+    /// # Errors
+    /// [`Fault::NotFinite`] if the mesh is degenerate.
+    pub fn reduce(&self) -> Result<Reduction, Fault> {
+        let (along, up) = self.elements;
+        let mesh = Mesh::block(self.length, self.height, along, up);
+        Reduction::of_block(mesh, self.poisson_ratio, self.plane, self.bound)
+    }
+}
+
+/// The linear part.
+pub(super) fn linear(reduction: &Reduction, params: &Params) -> Linear {
+    Linear::new(reduction, params)
+}
+
+/// The tread face and its laws.
+///
+/// # Errors
+/// [`Fault::File`] and [`Fault::Invalid`] for a friction table that cannot be read.
+pub(super) fn face(reduction: &Reduction, params: &Params) -> Result<Face, Fault> {
+    let table = match params.friction.form {
+        FrictionForm::Table => Some(read_table(&params.friction.table_file)?),
+        _ => None,
+    };
+    Ok(Face {
+        area: reduction.weights.iter().map(|w| w * params.block.width).collect(),
+        profile: vec![0.0; reduction.contact_nodes()],
+        smoothing_speed: params.friction.smoothing_speed,
+        friction: Law::new(&params.friction, table.as_ref()),
+        contact: params.contact.clone(),
+        shear_strength: 0.0,
+        shear_smoothing: params.friction.smoothing_speed,
+        pull_off: 0.0,
+        damping: 0.0,
+    })
+}
+
+/// The integrator's settings.
+pub(super) fn settings(solver: &Solver) -> Settings {
+    Settings {
+        tolerance: solver.tolerance,
+        max_step: solver.max_step,
+        min_step: solver.min_step,
+    }
+}
+
+/// Reads a measured characteristic: CSV with the columns pressure_pa, speed_m_s, mu.
+fn read_table(path: &str) -> Result<Table, Fault> {
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::File {
+        path: format!("friction.table_file {path:?}"),
+        reason: e.to_string(),
+    })?;
+    let mut points = Vec::new();
+    let mut problems = Vec::new();
+    for (number, line) in text.lines().enumerate().skip(1) {
+        let numbers: Vec<f64> = line.split(',').filter_map(|n| n.trim().parse().ok()).collect();
+        match numbers[..] {
+            [p, v, mu] => points.push((p, v, mu)),
+            [] if line.trim().is_empty() => {}
+            _ => problems.push(Problem::new(
+                format!("{path} line {}", number + 1),
+                line,
+                "three numbers: pressure_pa, speed_m_s, mu",
+                "mend or delete the line",
+            )),
+        }
+    }
+    if !problems.is_empty() {
+        return Err(Fault::Invalid(problems));
+    }
+    Table::from_points(&points)
+}

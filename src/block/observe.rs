@@ -1,0 +1,190 @@
+//! Outputs from the state of motion.
+
+use super::signals::{Outputs, STATIONS};
+use super::TreadBlock;
+use crate::contact::Traction;
+use crate::dynamics::{dense, Kinematics, Linear, State};
+use crate::mesh::Mesh;
+
+/// Quadratic interpolation from contact nodes to equidistant stations, with buffers.
+#[derive(Clone, Debug)]
+pub(super) struct Stations {
+    /// Per station: first of three nodes, and their weights.
+    places: Vec<(usize, [f64; 3])>,
+    traction: Traction,
+    u: Vec<f64>,
+    v: Vec<f64>,
+    compression: Vec<f64>,
+    slip: Vec<f64>,
+    lift: Vec<f64>,
+}
+
+impl Stations {
+    /// Stations along the tread face of `mesh`.
+    pub(super) fn along(mesh: &Mesh) -> Self {
+        let nodes = mesh.x.len();
+        let (first, last) = (mesh.x[0], mesh.x[nodes - 1]);
+        let place = |k: usize| {
+            let x = first + (last - first) * k as f64 / (STATIONS - 1) as f64;
+            let element = (1..mesh.elements().0).take_while(|e| mesh.x[2 * e] <= x).count();
+            let (left, right) = (mesh.x[2 * element], mesh.x[2 * element + 2]);
+            let xi = 2.0 * (x - left) / (right - left) - 1.0;
+            (2 * element, [0.5 * xi * (xi - 1.0), 1.0 - xi * xi, 0.5 * xi * (xi + 1.0)])
+        };
+        Self {
+            places: (0..STATIONS).map(place).collect(),
+            traction: Traction::new(nodes),
+            u: vec![0.0; 2 * nodes],
+            v: vec![0.0; 2 * nodes],
+            compression: vec![0.0; nodes],
+            slip: vec![0.0; nodes],
+            lift: vec![0.0; nodes],
+        }
+    }
+
+    fn at(&self, values: &[f64]) -> [f64; STATIONS] {
+        std::array::from_fn(|k| {
+            let (node, [a, b, c]) = self.places[k];
+            a * values[node] + b * values[node + 1] + c * values[node + 2]
+        })
+    }
+}
+
+impl TreadBlock {
+    /// Compression of the contact nodes [m] as the state stands.
+    pub(super) fn compression(&self) -> Vec<f64> {
+        self.stations.compression.clone()
+    }
+
+    /// Displacements [m] of all mesh nodes relative to the clamped face, block frame: x and z per
+    /// node, in the order of [`Mesh::position`].
+    pub fn field(&self) -> Vec<[f64; 2]> {
+        let scale = (self.params.rubber.density * self.params.block.width).sqrt();
+        let value = |dof: Option<usize>| {
+            dof.map_or(0.0, |row| {
+                let shape = self.reduction.shapes.row(row);
+                shape.iter().zip(&self.state.z).map(|(s, z)| s * z).sum::<f64>() / scale
+            })
+        };
+        self.reduction.dof.chunks_exact(2).map(|d| [value(d[0]), value(d[1])]).collect()
+    }
+
+    /// Writes the outputs for the state and the prescribed motion as they stand.
+    pub(super) fn observe(&mut self) {
+        let mut motion = self.motion;
+        free_the_face(&self.linear, &self.state, &mut motion);
+        self.contact_now(&motion);
+        let nodes = self.linear.nodes();
+        let (stations, out) = (&self.stations, &mut self.outputs);
+        let corner = |values: &[f64], node: usize| [values[node], values[nodes + node]];
+        out.run_in_displacement = corner(&stations.u, 0);
+        out.run_in_velocity = corner(&stations.v, 0);
+        out.run_out_displacement = corner(&stations.u, nodes - 1);
+        out.run_out_velocity = corner(&stations.v, nodes - 1);
+        let t = &stations.traction;
+        out.contact_force = [t.tangential.iter().sum(), t.normal.iter().sum()];
+        out.friction_coefficient = if out.contact_force[1] > 0.0 {
+            out.contact_force[0] / out.contact_force[1]
+        } else {
+            0.0
+        };
+        let power = t.tangential.iter().zip(&stations.slip).map(|(f, v)| -f * v);
+        out.friction_power = power.sum();
+        out.pressure = stations.at(&t.pressure).map(|p| p.max(0.0));
+        out.sliding_speed = stations.at(&stations.slip);
+        shares(&self.face.area, stations, self.params.friction.smoothing_speed, out);
+        out.wear_mass = self.wear_mass;
+        out.wear_depth_max = self.state.worn.iter().copied().fold(0.0, f64::max);
+        out.carriage_z = motion.position[1];
+        self.belt_reaction(&motion);
+    }
+
+    /// Displacements, velocities and tractions of the contact nodes.
+    fn contact_now(&mut self, motion: &Kinematics) {
+        let (linear, st) = (&self.linear, &mut self.stations);
+        let nodes = linear.nodes();
+        st.u.fill(0.0);
+        st.v.fill(0.0);
+        dense::add_columns(&mut st.u, &linear.by_mode, &self.state.z);
+        dense::add_columns(&mut st.v, &linear.by_mode, &self.state.w);
+        let [sin, cos] = motion.sin_cos;
+        for i in 0..nodes {
+            let (x, z) = (linear.node_x[i] + st.u[i], linear.node_z + st.u[nodes + i]);
+            let (vx, vz) = (st.v[i], st.v[nodes + i]);
+            let (along, up) = (cos * x - sin * z, sin * x + cos * z);
+            st.compression[i] =
+                -(motion.position[1] + up) - self.face.profile[i] - self.state.worn[i];
+            st.slip[i] = motion.velocity[0] + cos * vx - sin * vz - motion.omega * up;
+            st.lift[i] = motion.velocity[1] + sin * vx + cos * vz + motion.omega * along;
+        }
+        self.face.evaluate(
+            &st.compression,
+            0.0,
+            &st.slip,
+            &st.lift,
+            &self.state.friction_factor,
+            &mut st.traction,
+        );
+    }
+
+    /// Force and moment on the belt: contact forces less what accelerates the block.
+    fn belt_reaction(&mut self, motion: &Kinematics) {
+        let (linear, state) = (&self.linear, &self.state);
+        let [sin, cos] = motion.sin_cos;
+        let mut road = motion.acceleration;
+        for (j, dof) in linear.base.iter().enumerate() {
+            road[dof.axis] = state.base_acceleration[j];
+        }
+        let base = [cos * road[0] + sin * road[1], -sin * road[0] + cos * road[1]];
+        let prescribed = {
+            let mut a = motion.acceleration;
+            linear.base.iter().for_each(|dof| a[dof.axis] = 0.0);
+            [cos * a[0] + sin * a[1], -sin * a[0] + cos * a[1]]
+        };
+        let mut rate = [linear.block_mass * base[0], linear.block_mass * base[1]];
+        let mut turning = linear.block_mass * 0.5 * linear.node_z * base[0];
+        for m in 0..linear.modes() {
+            let acceleration = state.dw[m] - linear.coupling_along(m, prescribed);
+            rate[0] += linear.coupling[0][m] * acceleration;
+            rate[1] += linear.coupling[1][m] * acceleration;
+            turning += linear.coupling[2][m] * acceleration;
+        }
+        let out = &mut self.outputs;
+        out.force = [
+            out.contact_force[0] - (cos * rate[0] - sin * rate[1]),
+            out.contact_force[1] - (sin * rate[0] + cos * rate[1]),
+        ];
+        let (st, nodes) = (&self.stations, linear.nodes());
+        let mut moment = -turning;
+        for i in 0..nodes {
+            let (x, z) = (linear.node_x[i] + st.u[i], linear.node_z + st.u[nodes + i]);
+            let (along, up) = (cos * x - sin * z, sin * x + cos * z);
+            moment += up * st.traction.tangential[i] - along * st.traction.normal[i];
+        }
+        out.moment_y = moment;
+    }
+}
+
+/// Replaces the prescribed by the actual motion of a free clamped face, but for the acceleration.
+fn free_the_face(linear: &Linear, state: &State, motion: &mut Kinematics) {
+    for (j, dof) in linear.base.iter().enumerate() {
+        motion.position[dof.axis] = state.base[j];
+        motion.velocity[dof.axis] = state.base_velocity[j];
+    }
+}
+
+/// Shares of the face that touch and that stick.
+fn shares(area: &[f64], stations: &Stations, smoothing_speed: f64, out: &mut Outputs) {
+    let total: f64 = area.iter().sum();
+    let (mut touching, mut sticking) = (0.0, 0.0);
+    for ((a, p), v) in area.iter().zip(&stations.traction.pressure).zip(&stations.slip) {
+        if *p > 0.0 {
+            touching += a;
+            if v.abs() < smoothing_speed {
+                sticking += a;
+            }
+        }
+    }
+    out.area_fraction = touching / total;
+    out.stick_fraction = if touching > 0.0 { sticking / touching } else { 0.0 };
+}

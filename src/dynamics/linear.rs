@@ -1,0 +1,116 @@
+//! The linear part of the block in SI units: decoupled modes of the clamped block and its carriage.
+
+use crate::params::{NormalDrive, Params};
+use crate::reduction::Reduction;
+
+/// A direction in which the clamped face may move freely, with what holds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BaseDof {
+    /// 0: along the road, 1: normal to it.
+    pub axis: usize,
+    /// Mass [kg] that moves with the clamped face.
+    pub mass: f64,
+    /// Damping [N s/m] to the prescribed motion.
+    pub damping: f64,
+    /// Stiffness [N/m] to the prescribed motion.
+    pub stiffness: f64,
+}
+
+/// One branch of a generalised Maxwell model beside the elastic modulus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Branch {
+    /// Modulus of the branch over Young's modulus [-].
+    pub share: f64,
+    /// Relaxation time [s].
+    pub time: f64,
+}
+
+/// z̈ + βω²ż + ω²(z + Σ gⱼ(z − yⱼ)) = Φᵀf − Γ·a, ẏⱼ = (z − yⱼ)/τⱼ, per mode (theory eq. 3.1).
+#[derive(Clone, Debug)]
+pub struct Linear {
+    /// ω² [1/s²] per mode.
+    pub omega2: Vec<f64>,
+    /// Stiffness-proportional damping β [s].
+    pub damping: f64,
+    /// Contact displacements per mode [kg^−1/2]: mode m at `m * 2 * nodes`, x of all nodes then z.
+    pub by_mode: Vec<f64>,
+    /// The transpose: contact displacement c at `c * modes`.
+    pub by_contact: Vec<f64>,
+    /// Coupling Γ [kg^1/2] to the acceleration of the clamped face: x, z, rotation.
+    pub coupling: [Vec<f64>; 3],
+    /// Mass of the block [kg].
+    pub block_mass: f64,
+    /// Positions of the contact nodes from the middle of the clamped face: x [m].
+    pub node_x: Vec<f64>,
+    /// The same, z [m]: −h.
+    pub node_z: f64,
+    /// Directions in which the clamped face is free.
+    pub base: Vec<BaseDof>,
+    /// Maxwell branches.
+    pub branches: Vec<Branch>,
+}
+
+impl Linear {
+    /// Scales a reduction to modulus, density and width.
+    pub fn new(reduction: &Reduction, params: &Params) -> Self {
+        let rubber = &params.rubber;
+        let linear_density = rubber.density * params.block.width;
+        let scale = linear_density.sqrt();
+        let (modes, contact) = (reduction.modes(), 2 * reduction.contact_nodes());
+        let mut by_mode = vec![0.0; modes * contact];
+        let mut by_contact = vec![0.0; modes * contact];
+        for m in 0..modes {
+            for c in 0..contact {
+                let value = reduction.contact_modes[(c, m)] / scale;
+                by_mode[m * contact + c] = value;
+                by_contact[c * modes + m] = value;
+            }
+        }
+        let e_over_rho = rubber.young_modulus / rubber.density;
+        let mut base = Vec::new();
+        if params.drive.normal == NormalDrive::Load {
+            let carriage = &params.carriage;
+            base.push(BaseDof {
+                axis: 1,
+                mass: carriage.mass,
+                damping: carriage.damping,
+                stiffness: 0.0,
+            });
+        }
+        Self {
+            omega2: reduction.lambda.iter().map(|l| l * e_over_rho).collect(),
+            damping: rubber.stiffness_damping,
+            by_mode,
+            by_contact,
+            coupling: std::array::from_fn(|r| {
+                reduction.coupling[r].iter().map(|g| g * scale).collect()
+            }),
+            block_mass: linear_density * params.block.length * params.block.height,
+            node_x: reduction.mesh.x.clone(),
+            node_z: -params.block.height,
+            base,
+            branches: Vec::new(),
+        }
+    }
+
+    /// Number of modes.
+    pub fn modes(&self) -> usize {
+        self.omega2.len()
+    }
+
+    /// Number of contact nodes.
+    pub fn nodes(&self) -> usize {
+        self.node_x.len()
+    }
+
+    /// Is the clamped face free along `axis`?
+    pub fn is_free(&self, axis: usize) -> bool {
+        self.base.iter().any(|b| b.axis == axis)
+    }
+
+    /// Coupling of mode `m` to a unit acceleration of the clamped face along a direction that is
+    /// (`x`, `z`) in the block's frame.
+    pub fn coupling_along(&self, m: usize, [x, z]: [f64; 2]) -> f64 {
+        self.coupling[0][m] * x + self.coupling[1][m] * z
+    }
+}

@@ -1,0 +1,227 @@
+//! Steps of the right size: error control on a dyadic division of the communication step.
+
+use super::energy::{self, Ledger};
+use super::linear::Linear;
+use super::matrices::StageMatrices;
+use super::stage::Stage;
+use super::state::State;
+use super::tr_bdf2::{TrBdf2, D, W};
+use crate::contact::Face;
+use crate::drive::Segment;
+use crate::error::Fault;
+
+/// A communication step is divided into at most 2^LEVELS internal steps.
+const LEVELS: usize = 12;
+/// Smallest parts of a communication step.
+const TICKS: usize = 1 << LEVELS;
+/// Communication steps that differ by less than this share use the same matrices.
+const SAME_STEP: f64 = 1e-9;
+/// Time over which the scale of the error control forgets [s].
+const SCALE_MEMORY: f64 = 2e-3;
+/// Share of the block's mass that moves with the tread face, for the scale of the error control.
+const MOVING_SHARE: f64 = 0.3;
+
+/// What the integrator is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Error of a step over the scale of the motion [-].
+    pub tolerance: f64,
+    /// Largest step [s].
+    pub max_step: f64,
+    /// Smallest step [s].
+    pub min_step: f64,
+}
+
+/// How much work was done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct Statistics {
+    /// Steps tried.
+    pub steps: u64,
+    /// Steps rejected by the error control or for want of convergence.
+    pub rejected: u64,
+    /// Newton iterations.
+    pub iterations: u64,
+    /// Step matrices computed.
+    pub matrices: u64,
+}
+
+/// Integrator with all its buffers; allocates nothing after construction.
+#[derive(Clone, Debug)]
+pub struct Integrator {
+    settings: Settings,
+    matrices: Vec<StageMatrices>,
+    last_h: f64,
+    step: TrBdf2,
+    statistics: Statistics,
+    ledger: Option<Ledger>,
+}
+
+impl Integrator {
+    /// An integrator for `linear`.
+    pub fn new(linear: &Linear, settings: Settings) -> Self {
+        Self {
+            settings,
+            matrices: vec![StageMatrices::new(linear); LEVELS + 1],
+            last_h: 0.0,
+            step: TrBdf2::new(linear),
+            statistics: Statistics::default(),
+            ledger: None,
+        }
+    }
+
+    /// Work done so far.
+    pub fn statistics(&self) -> Statistics {
+        Statistics { iterations: self.step.iterations, ..self.statistics }
+    }
+
+    /// The energy ledger, if one is kept.
+    pub fn ledger(&self) -> Option<&Ledger> {
+        self.ledger.as_ref()
+    }
+
+    /// Opens an energy ledger at the state as it stands.
+    pub fn open_ledger(&mut self, linear: &Linear, face: &Face, state: &State, compression: &[f64]) {
+        let stored = energy::stored(linear, face, state, compression);
+        self.step.keep_power = true;
+        self.step.powers = Default::default();
+        self.ledger = Some(Ledger { stored_at_start: stored, stored, ..Ledger::default() });
+    }
+
+    /// Communication step [s] that the matrices are kept for.
+    pub fn last_h(&self) -> f64 {
+        self.last_h
+    }
+
+    /// Goes on from a restored state as if the last communication step had been `last_h` [s].
+    pub fn resume(&mut self, last_h: f64) {
+        self.last_h = last_h;
+    }
+
+    /// The stage at the end of the last step.
+    pub fn last_stage(&self) -> &Stage {
+        &self.step.stage
+    }
+
+    /// Moves `state` over `h` [s]; `after_step(step size, end of step, state)` sees every accepted
+    /// step and may change the state's factors and worn depths.
+    ///
+    /// # Errors
+    /// [`Fault::NoConvergence`] and [`Fault::NotFinite`]; `state` then stands at the last good time.
+    pub fn advance(
+        &mut self,
+        linear: &Linear,
+        face: &Face,
+        state: &mut State,
+        h: f64,
+        segment: &Segment,
+        after_step: &mut dyn FnMut(f64, &Stage, &mut State),
+    ) -> Result<(), Fault> {
+        let start = state.time;
+        let interval = if (h - self.last_h).abs() <= SAME_STEP * h { self.last_h } else { h };
+        self.last_h = interval;
+        self.step.start_from(linear, state);
+        let mut at = 0;
+        while at < TICKS {
+            let wish = self.level(interval, at, state.step);
+            let level = self.try_levels(linear, face, state, segment, interval, at, wish)?;
+            let step = interval / (1_usize << level) as f64;
+            after_step(step, &self.step.stage, state);
+            self.close_ledger(linear, face, state, step);
+            at += TICKS >> level;
+            state.time = start + h * (at as f64 / TICKS as f64);
+        }
+        Ok(())
+    }
+
+    /// Takes a step from tick `at`, halving it until it is good; returns its level.
+    #[allow(clippy::too_many_arguments)]
+    fn try_levels(
+        &mut self,
+        linear: &Linear,
+        face: &Face,
+        state: &mut State,
+        segment: &Segment,
+        interval: f64,
+        at: usize,
+        mut level: usize,
+    ) -> Result<usize, Fault> {
+        let from = interval * (at as f64 / TICKS as f64);
+        loop {
+            let h = interval / (1_usize << level) as f64;
+            let last_resort = level == LEVELS || 0.5 * h < self.settings.min_step;
+            match self.try_step(linear, face, state, segment, from, h, level) {
+                Ok(ratio) => {
+                    let growth = (0.9 * ratio.max(1e-6).powf(-1.0 / 3.0)).clamp(0.3, 2.0);
+                    state.step = (h * growth).min(self.settings.max_step);
+                    if ratio <= 1.0 || last_resort {
+                        self.step.accept(state);
+                        return Ok(level);
+                    }
+                }
+                Err(fault) if last_resort => return Err(fault),
+                Err(_) => state.step = 0.25 * h,
+            }
+            self.statistics.rejected += 1;
+            level += 1;
+        }
+    }
+
+    /// Smallest level whose step is within the wish and starts on its grid.
+    fn level(&self, interval: f64, at: usize, wish: f64) -> usize {
+        let wish = if wish > 0.0 { wish } else { self.settings.max_step };
+        let wish = wish.min(self.settings.max_step) * (1.0 + 1e-9);
+        (0..LEVELS)
+            .find(|k| interval / (1_usize << k) as f64 <= wish && at % (TICKS >> k) == 0)
+            .unwrap_or(LEVELS)
+    }
+
+    /// One step of `h` from `from` [s] after the start of the segment; returns its error over the
+    /// tolerance.
+    #[allow(clippy::too_many_arguments)]
+    fn try_step(
+        &mut self,
+        linear: &Linear,
+        face: &Face,
+        state: &mut State,
+        segment: &Segment,
+        from: f64,
+        h: f64,
+        level: usize,
+    ) -> Result<f64, Fault> {
+        let not_finite = |what: &str| Fault::NotFinite { what: what.into(), time: state.time };
+        let matrices = &mut self.matrices[level];
+        let angle = segment.angle.at(from + h);
+        if !matrices.fit(linear, D * h, state.stiffness_factor, angle) {
+            self.statistics.matrices += 1;
+            if !matrices.compute(linear, D * h, state.stiffness_factor, angle) {
+                matrices.a = 0.0;
+                return Err(not_finite("the Delassus matrix"));
+            }
+        }
+        self.statistics.steps += 1;
+        self.step.take(linear, face, state, matrices, segment, from, h)?;
+        let error = self.step.error(linear, state, matrices, h);
+        if !error.is_finite() {
+            return Err(not_finite("the motion of the block"));
+        }
+        let road = segment.x.rate(from + h).abs();
+        let floor = (MOVING_SHARE * linear.block_mass).sqrt() * road.max(1e-3);
+        let remembered = state.scale * (-h / SCALE_MEMORY).exp();
+        let scale = remembered.max(floor).max(self.step.speed());
+        if error <= self.settings.tolerance * scale {
+            state.scale = scale;
+        }
+        Ok(error / (self.settings.tolerance * scale))
+    }
+
+    fn close_ledger(&mut self, linear: &Linear, face: &Face, state: &State, h: f64) {
+        let Some(ledger) = &mut self.ledger else { return };
+        let [start, middle, end] = self.step.powers;
+        ledger.add(&start, W * h);
+        ledger.add(&middle, W * h);
+        ledger.add(&end, D * h);
+        self.step.powers[0] = end;
+        let compression = &self.step.stage.compression;
+        ledger.stored = energy::stored(linear, face, state, compression);
+    }
+}
