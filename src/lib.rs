@@ -17,6 +17,7 @@ pub mod contact;
 pub mod drive;
 pub mod dynamics;
 pub mod block;
+pub mod scenario;
 
 pub use block::TreadBlock;
 pub use error::{Fault, Problem};
