@@ -18,6 +18,7 @@ pub mod drive;
 pub mod dynamics;
 pub mod block;
 pub mod scenario;
+pub mod metrics;
 
 pub use block::TreadBlock;
 pub use error::{Fault, Problem};
