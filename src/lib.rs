@@ -19,6 +19,8 @@ pub mod dynamics;
 pub mod block;
 pub mod scenario;
 pub mod metrics;
+#[cfg(feature = "cli")]
+pub mod cli;
 
 pub use block::TreadBlock;
 pub use error::{Fault, Problem};
