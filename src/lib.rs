@@ -17,6 +17,10 @@ pub mod contact;
 pub mod drive;
 pub mod dynamics;
 pub mod block;
+pub mod scenario;
+pub mod metrics;
+#[cfg(feature = "cli")]
+pub mod cli;
 
 pub use block::TreadBlock;
 pub use error::{Fault, Problem};

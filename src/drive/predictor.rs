@@ -123,7 +123,7 @@ mod tests {
     fn position_and_velocity_never_jump_after_the_second_point() {
         let mut predictor = Predictor::default();
         let mut last: Option<Segment> = None;
-        let mut t = 0.0;
+        let mut t = 0.0_f64;
         for k in 0..50 {
             let h = 1e-5 * (1.0 + (k % 3) as f64);
             let pose = Pose { x: (300.0 * t).sin(), ..Pose::default() };

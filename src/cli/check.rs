@@ -1,0 +1,70 @@
+//! `tread check`: all problems of a file at once.
+
+use std::path::{Path, PathBuf};
+
+use super::output::{self, Done, Stop};
+use crate::error::{Fault, Problem};
+use crate::params::load;
+use crate::scenario::{belt_csv, config, Roll};
+
+/// What was typed.
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A run (TOML with a [run] table), a parameter file (TOML without one) or a belt path (CSV)
+    file: PathBuf,
+    /// Tell the problems as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// Checks the file; problems go to the standard output, for they are what was asked for.
+pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
+    let file = &arguments.file;
+    let (kind, result) = if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+        ("belt path", belt_csv::read(file).and_then(|s| Roll::through(&s)).map(|_| ()))
+    } else {
+        check_toml(file)?
+    };
+    let problems = match result {
+        Ok(()) => Vec::new(),
+        Err(Fault::Invalid(problems)) => problems,
+        Err(other) => return Err(other.into()),
+    };
+    let text = if arguments.json { json(kind, &problems) } else { plain(file, kind, &problems) };
+    output::to_stdout(text.as_bytes())?;
+    Ok(if problems.is_empty() { Done::Fine } else { Done::Problems })
+}
+
+fn check_toml(file: &Path) -> Result<(&'static str, Result<(), Fault>), Fault> {
+    let text = config::read_text(file)?;
+    let is_run = text.parse::<toml::Table>().is_ok_and(|t| t.contains_key("run"));
+    Ok(if is_run {
+        ("run", config::read(file, &[]).map(|_| ()))
+    } else {
+        ("parameter file", load::from_toml(&text).map(|_| ()))
+    })
+}
+
+fn plain(file: &Path, kind: &str, problems: &[Problem]) -> String {
+    let file = file.display();
+    match problems.len() {
+        0 => format!("{file}: a good {kind}\n"),
+        n => {
+            let plural = if n == 1 { "" } else { "s" };
+            let lines: String = problems.iter().map(|p| format!("  {p}\n")).collect();
+            format!("{file}: a {kind} with {n} problem{plural}\n{lines}")
+        }
+    }
+}
+
+fn json(kind: &str, problems: &[Problem]) -> String {
+    let list: Vec<_> = problems
+        .iter()
+        .map(|p| {
+            serde_json::json!({
+                "what": p.what, "value": p.value, "allowed": p.allowed, "remedy": p.remedy,
+            })
+        })
+        .collect();
+    format!("{}\n", serde_json::json!({ "kind": kind, "problems": list }))
+}
