@@ -30,6 +30,11 @@ pub fn settle(linear: &Linear, face: &Face, pose: Pose, state: &mut State) -> Re
     let stiffness = compliance.clone().try_inverse().ok_or_else(|| failure(state.time, 0.0))?;
     let mut height = start_height(linear, face, pose, free.is_some());
     let mut u = DVector::zeros(size);
+    if free.is_some() && pose.load <= 0.0 {
+        // Nothing presses: the block hangs where it just touches.
+        store(linear, face, state, &u, height, up, free);
+        return Ok(());
+    }
     for _ in 0..MAX_ITERATIONS {
         let mut jacobian = stiffness.clone().resize(size + 1, size + 1, 0.0);
         let mut rhs = -(&stiffness * &u).resize_vertically(size + 1, 0.0);
