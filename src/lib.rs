@@ -17,6 +17,8 @@ pub mod contact;
 pub mod drive;
 pub mod dynamics;
 pub mod block;
+#[cfg(feature = "cli")]
+pub mod columns;
 pub mod scenario;
 pub mod metrics;
 #[cfg(feature = "cli")]

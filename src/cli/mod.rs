@@ -8,6 +8,7 @@ mod belt;
 mod check;
 mod fmu;
 mod init;
+mod metrics;
 mod output;
 mod plot;
 mod simulate;
@@ -56,6 +57,8 @@ enum Command {
     Check(check::Arguments),
     /// Draw the result of a run as SVG
     Plot(plot::Arguments),
+    /// Print stick-slip frequency, amplitude, mean friction and stick fraction of a sliding run
+    Metrics(metrics::Arguments),
     /// Build, describe or check the FMU
     Fmu(fmu::Arguments),
     /// Write a completion script for a shell
@@ -73,6 +76,7 @@ pub fn main() -> ExitCode {
         Command::Init(arguments) => init::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Plot(arguments) => plot::run(&arguments),
+        Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Fmu(arguments) => fmu::run(&arguments),
         Command::Completions { shell } => completions(shell),
     };

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use crate::block::OUTPUTS;
-use crate::metrics::{self, Recorder};
+use crate::metrics::{self, Recorder, Trace};
 use crate::params::{table, Value};
 use crate::scenario::{config::Config, Scenario};
 
@@ -25,24 +25,29 @@ pub fn of(config: &Config, recorder: &Recorder) -> Summary {
     let trace = recorder.trace();
     let line = |name, unit, value| Line { name, unit, value };
     let lines = match &config.scenario {
-        Scenario::Slide(slide) => {
-            let found = metrics::stick_slip(&trace, slide.speed);
-            vec![
-                line("stick-slip frequency", "Hz", found.frequency),
-                line("regularity", "1", found.regularity),
-                line("displacement, peak to peak", "um", 1e6 * found.displacement_amplitude),
-                line("velocity, peak to peak", "mm/s", 1e3 * found.velocity_amplitude),
-                line("mean friction", "1", found.mean_friction),
-                line("stick fraction", "1", found.stick_fraction),
-                line("settled from", "ms", 1e3 * found.settled_from),
-            ]
-        }
+        Scenario::Slide(slide) => return of_sliding(&trace, slide.speed),
         Scenario::Roll(_) => vec![
             line("displacement, peak to peak", "um", 1e6 * metrics::peak_to_peak(trace.displacement)),
             line("velocity, peak to peak", "mm/s", 1e3 * metrics::peak_to_peak(trace.velocity)),
             line("largest friction", "1", trace.friction.iter().fold(0.0, |a, f| f.abs().max(a))),
         ],
     };
+    Summary { lines }
+}
+
+/// Summary of a sliding run at a road speed [m/s].
+pub fn of_sliding(trace: &Trace, speed: f64) -> Summary {
+    let found = metrics::stick_slip(trace, speed);
+    let line = |name, unit, value| Line { name, unit, value };
+    let lines = vec![
+        line("stick-slip frequency", "Hz", found.frequency),
+        line("regularity", "1", found.regularity),
+        line("displacement, peak to peak", "um", 1e6 * found.displacement_amplitude),
+        line("velocity, peak to peak", "mm/s", 1e3 * found.velocity_amplitude),
+        line("mean friction", "1", found.mean_friction),
+        line("stick fraction", "1", found.stick_fraction),
+        line("settled from", "ms", 1e3 * found.settled_from),
+    ];
     Summary { lines }
 }
 
@@ -58,7 +63,8 @@ impl Summary {
             .collect()
     }
 
-    fn json(&self) -> serde_json::Value {
+    /// The table as a JSON object.
+    pub fn json(&self) -> serde_json::Value {
         let lines = self.lines.iter().map(|l| {
             let value = json!({ "value": l.value, "unit": l.unit });
             (l.name.to_string(), value)

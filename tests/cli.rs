@@ -1,0 +1,252 @@
+//! The command line from outside: the real binary, in a folder of its own per test.
+#![cfg(feature = "cli")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+/// A folder that goes away with the test.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(test: &str) -> Self {
+        let path = std::env::temp_dir().join(format!("tread-{test}-{}", std::process::id()));
+        std::fs::create_dir_all(&path).unwrap();
+        Self(path)
+    }
+
+    fn write(&self, name: &str, text: &str) -> PathBuf {
+        let path = self.0.join(name);
+        std::fs::write(&path, text).unwrap();
+        path
+    }
+
+    fn tread(&self, arguments: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_tread"))
+            .args(arguments)
+            .current_dir(&self.0)
+            .output()
+            .unwrap()
+    }
+
+    /// Standard output of a command that has to do its work.
+    fn fine(&self, arguments: &[&str]) -> String {
+        let output = self.tread(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}\n{}", stderr(&output));
+        String::from_utf8(output.stdout).unwrap()
+    }
+
+    /// Standard error of a command that has to refuse.
+    fn refused(&self, arguments: &[&str]) -> String {
+        let output = self.tread(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}\n{}", stderr(&output));
+        stderr(&output)
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn project(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+const SLIDE: &str =
+    "[run]\nduration = 0.002\n[run.slide]\nspeed = 0.3\nmean_pressure = 250e3\n";
+
+/// Every part of a message that a user needs: name, value, allowed, way out.
+fn tells(text: &str, parts: &[&str]) {
+    let line = text.lines().find(|line| line.contains(parts[0]));
+    let line = line.unwrap_or_else(|| panic!("{:?} is not named in:\n{text}", parts[0]));
+    for part in parts {
+        assert!(line.contains(part), "{part:?} is not told in: {line}");
+    }
+}
+
+#[test]
+fn what_init_writes_is_checked_simulated_and_plotted() {
+    for kind in ["slide", "roll"] {
+        let folder = Folder::new(&format!("chain-{kind}"));
+        folder.fine(&["init", kind, "--out", "run.toml"]);
+        assert!(folder.fine(&["check", "run.toml"]).contains("a good run"));
+        let short = ["--set", "run.duration=0.001"];
+        folder.fine(&["simulate", "run.toml", "--out", "run.csv", short[0], short[1]]);
+        folder.fine(&["plot", "run.csv"]);
+        let svg = std::fs::read_to_string(folder.0.join("run.svg")).unwrap();
+        assert!(svg.starts_with("<svg") && svg.contains("displacement [µm]"));
+        assert!(!svg.contains("NaN"), "a coordinate is not a number");
+    }
+}
+
+#[test]
+fn the_csv_has_the_outputs_of_the_fmu_and_a_row_per_communication_step() {
+    let folder = Folder::new("columns");
+    folder.write("run.toml", SLIDE);
+    let csv = folder.fine(&["simulate", "run.toml", "--set", "run.communication_step=1e-4"]);
+    let mut lines = csv.lines();
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    // 20 scalars, 2 × 21 stations and the time: the list of outputs in the issue on the model.
+    assert_eq!(header.len(), 20 + 2 * 21 + 1, "{header:?}");
+    assert_eq!(header[0], "time");
+    for name in ["force.x", "contact.pressure[1]", "contact.sliding_speed[21]", "carriage.z"] {
+        assert!(header.contains(&name), "{name}");
+    }
+    let times: Vec<f64> =
+        lines.map(|line| line.split(',').next().unwrap().parse().unwrap()).collect();
+    assert_eq!(times.len(), 21);
+    assert!(times.iter().enumerate().all(|(i, t)| (t - 1e-4 * i as f64).abs() < 1e-12));
+}
+
+#[test]
+fn json_names_units_and_parameters() {
+    let folder = Folder::new("json");
+    folder.write("run.toml", SLIDE);
+    let text = folder.fine(&["simulate", "run.toml", "--json", "--set", "friction.mu_inf=0.55"]);
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["parameters"]["friction.mu_inf"], 0.55);
+    assert_eq!(json["parameters"]["drive.normal"], "load");
+    assert_eq!(json["columns"]["contact.pressure[3]"]["unit"], "Pa");
+    assert_eq!(json["columns"]["time"]["values"].as_array().unwrap().len(), 201);
+    assert_eq!(json["summary"]["stick-slip frequency"]["unit"], "Hz");
+}
+
+#[test]
+fn all_problems_of_a_file_are_told_at_once() {
+    let folder = Folder::new("problems");
+    folder.write(
+        "bad.toml",
+        "[run]\nduration = -1.0\ncolour = \"red\"\n[run.slide]\nspeed = \"fast\"\n\
+         [rubber]\npoisson_ratio = 0.5\nyoung_moduls = 5e7\n[friction]\nform = \"linear\"\n",
+    );
+    let text = folder.refused(&["simulate", "bad.toml", "--set", "block.length=0"]);
+    tells(&text, &["run.duration", "-1", "0.000001 to 10000 s"]);
+    tells(&text, &["run.colour", "red", "one of", "drop"]);
+    tells(&text, &["run.slide.speed", "fast", "-50 to 50 m/s", "SI units"]);
+    tells(&text, &["run.slide.mean_pressure", "missing", "a number [Pa]", "mean_pressure = 250e3"]);
+    tells(&text, &["rubber.poisson_ratio", "0.5", "4.999e-1"]);
+    tells(&text, &["rubber.young_moduls", "did you mean rubber.young_modulus?"]);
+    tells(&text, &["friction.form", "linear", "rational, log_bell, table", "give"]);
+    tells(&text, &["block.length = 0", "1e-3 to 2e-1 m"]);
+    let output = folder.tread(&["check", "bad.toml", "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(json["problems"].as_array().unwrap().len() >= 7);
+}
+
+#[test]
+fn a_run_that_says_nothing_or_too_much_is_refused() {
+    let folder = Folder::new("nothing");
+    folder.write("empty.toml", "[block]\nlength = 0.02\n");
+    tells(&folder.refused(&["simulate", "empty.toml"]), &["run = missing", "[run.slide]", "init"]);
+    folder.write("both.toml", &format!("{SLIDE}[run.roll]\nbelt_speed = 10\n"));
+    tells(&folder.refused(&["simulate", "both.toml"]), &["run.slide or roll", "exactly one"]);
+    folder.write("drive.toml", &format!("{SLIDE}[drive]\nnormal = \"trajectory\"\n"));
+    let text = folder.refused(&["simulate", "drive.toml"]);
+    tells(&text, &["drive.normal", "trajectory", "load", "leave it out"]);
+    folder.write("broken.toml", "[run\n");
+    tells(&folder.refused(&["simulate", "broken.toml"]), &["TOML"]);
+    tells(&folder.refused(&["simulate", "absent.toml"]), &["absent.toml", "No such file"]);
+    tells(&folder.refused(&["simulate", "both.toml", "--set", "nonsense"]), &["nonsense"]);
+}
+
+#[test]
+fn a_malformed_belt_path_is_told_by_column_and_line() {
+    let folder = Folder::new("belt");
+    folder.write("run.toml", "[run.roll]\nbelt_file = \"belt.csv\"\n");
+    tells(&folder.refused(&["simulate", "run.toml"]), &["run.roll.belt_file", "belt.csv"]);
+    folder.write("belt.csv", "time,belt_x_m,belt_z_m\n0,0,0\n");
+    let text = folder.refused(&["simulate", "run.toml"]);
+    tells(&text, &["column time_s", "missing", "tread belt"]);
+    tells(&text, &["column belt_angle_rad", "missing"]);
+    let header = "time_s,belt_x_m,belt_z_m,belt_angle_rad\n";
+    folder.write("belt.csv", &format!("{header}0,0,0.01,0\n1e-5,x,0.01,0\n2e-5,0,nan\n"));
+    let text = folder.refused(&["simulate", "run.toml"]);
+    tells(&text, &["column belt_x_m, line 3", "x", "a finite number"]);
+    tells(&text, &["column belt_z_m, line 4", "nan"]);
+    tells(&text, &["column belt_angle_rad, line 4", "missing"]);
+    let still = "1e-5,0,0.01,0\n2e-5,0,0.01,0\n3e-5,0,0.01,0\n3e-5,9,0.01,0\n";
+    folder.write("belt.csv", &format!("{header}0,0,0.01,0\n{still}"));
+    let output = folder.tread(&["check", "belt.csv"]);
+    assert_eq!(output.status.code(), Some(1));
+    tells(&String::from_utf8_lossy(&output.stdout), &["time_s, sample 5", "more than 0.00003"]);
+}
+
+#[test]
+fn belt_writes_what_roll_reads() {
+    let folder = Folder::new("roll");
+    folder.fine(&["belt", "--speed", "15", "--slip", "-0.02", "--out", "belt.csv"]);
+    folder.write("run.toml", "[run]\nduration = 1e-3\n[run.roll]\nbelt_file = \"belt.csv\"\n");
+    assert_eq!(folder.fine(&["simulate", "run.toml"]).lines().count(), 102);
+    tells(&folder.refused(&["belt", "--speed", "-5"]), &["speed", "-5", "0.1 to 150 m/s"]);
+}
+
+#[test]
+fn the_shipped_examples_are_good() {
+    let folder = Folder::new("examples");
+    for name in ["examples/slide.toml", "examples/roll.toml"] {
+        let file = project(name);
+        folder.fine(&["check", file.to_str().unwrap()]);
+        let out = ["--set", "run.duration=5e-4", "--out", "run.csv"];
+        folder.fine(&[&["simulate", file.to_str().unwrap()], &out[..]].concat());
+    }
+}
+
+#[test]
+fn metrics_of_a_file_are_those_of_its_signal() {
+    // Closed form: a sine of 1 kHz, 100 µm peak to peak, on a friction of 0.8.
+    let folder = Folder::new("metrics");
+    let mut csv = String::from(
+        "time,run_in.displacement.x,run_in.velocity.x,contact.friction_coefficient,\
+         contact.stick_fraction\n",
+    );
+    for i in 0..2000 {
+        let t = 1e-5 * f64::from(i);
+        let (sin, cos) = (std::f64::consts::TAU * 1e3 * t).sin_cos();
+        csv.push_str(&format!("{t},{},{},0.8,0.5\n", 50e-6 * sin, 0.314159 * cos));
+    }
+    folder.write("run.csv", &csv);
+    let text = folder.fine(&["metrics", "run.csv", "--speed", "0.3", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let value = |name: &str| json[name]["value"].as_f64().unwrap();
+    assert!((value("stick-slip frequency") / 1e3 - 1.0).abs() < 1e-3);
+    assert!((value("displacement, peak to peak") / 100.0 - 1.0).abs() < 1e-3);
+    assert!((value("mean friction") - 0.8).abs() < 1e-9);
+}
+
+#[test]
+fn a_reader_that_leaves_is_no_fault() {
+    let folder = Folder::new("pipe");
+    folder.write("run.toml", SLIDE);
+    let mut child = Command::new(env!("CARGO_BIN_EXE_tread"))
+        .args(["simulate", "run.toml", "--set", "run.communication_step=1e-6"])
+        .current_dir(&folder.0)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+}
+
+#[test]
+fn help_shows_examples_and_exit_codes_and_completions_know_all_commands() {
+    let folder = Folder::new("help");
+    let help = folder.fine(&["--help"]);
+    for part in ["Examples:", "Exit codes:", "tread init slide", "SI units"] {
+        assert!(help.contains(part), "{part}");
+    }
+    for shell in ["bash", "zsh", "fish"] {
+        let script = folder.fine(&["completions", shell]);
+        for command in ["simulate", "belt", "init", "check", "plot", "metrics", "fmu"] {
+            assert!(script.contains(command), "{shell}: {command}");
+        }
+    }
+    assert_eq!(folder.tread(&["simulat"]).status.code(), Some(2));
+}
