@@ -8,6 +8,7 @@
 #![warn(missing_docs)]
 
 pub mod error;
+pub mod pack;
 pub mod params;
 pub mod effects;
 pub mod mesh;

@@ -3,10 +3,10 @@
 use crate::contact::friction::Law;
 use crate::contact::friction_table::Table;
 use crate::contact::Face;
-use crate::dynamics::{Linear, Settings};
+use crate::dynamics::{Integrator, Linear, Settings};
 use crate::error::{Fault, Problem};
 use crate::mesh::Mesh;
-use crate::params::{FrictionForm, Params, Plane, Solver};
+use crate::params::{FrictionForm, Params, Plane};
 use crate::reduction::Reduction;
 
 /// Fixed-interface modes are kept up to this multiple of `solver.frequency_bound`, so that the
@@ -81,26 +81,20 @@ pub(super) fn face(reduction: &Reduction, params: &Params) -> Result<Face, Fault
         FrictionForm::Table => Some(read_table(&params.friction.table_file)?),
         _ => None,
     };
-    Ok(Face {
-        area: reduction.weights.iter().map(|w| w * params.block.width).collect(),
-        profile: vec![0.0; reduction.contact_nodes()],
-        smoothing_speed: params.friction.smoothing_speed,
-        friction: Law::new(&params.friction, table.as_ref()),
-        contact: params.contact.clone(),
-        shear_strength: 0.0,
-        shear_smoothing: params.friction.smoothing_speed,
-        pull_off: 0.0,
-        damping: 0.0,
-    })
+    let area: Vec<f64> = reduction.weights.iter().map(|w| w * params.block.width).collect();
+    let law = Law::new(&params.friction, table.as_ref());
+    Ok(Face::new(&area, law, &params.contact, params.friction.smoothing_speed))
 }
 
-/// The integrator's settings.
-pub(super) fn settings(solver: &Solver) -> Settings {
-    Settings {
+/// The integrator.
+pub(super) fn integrator(linear: &Linear, face: &Face, params: &Params) -> Integrator {
+    let solver = &params.solver;
+    let settings = Settings {
         tolerance: solver.tolerance,
         max_step: solver.max_step,
         min_step: solver.min_step,
-    }
+    };
+    Integrator::new(linear, settings, face.stiffness_at(params.friction.reference_pressure))
 }
 
 /// Reads a measured characteristic: CSV with the columns pressure_pa, speed_m_s, mu.

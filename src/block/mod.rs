@@ -53,7 +53,7 @@ impl TreadBlock {
         check::checked(params)?;
         let linear = build::linear(&reduction, params);
         let face = build::face(&reduction, params)?;
-        let integrator = Integrator::new(&linear, build::settings(&params.solver));
+        let integrator = build::integrator(&linear, &face, params);
         let mut block = Self {
             state: State::new(&linear),
             stations: Stations::along(&reduction.mesh),
@@ -80,7 +80,7 @@ impl TreadBlock {
         self.state = State::new(&self.linear);
         self.state.time = time;
         self.wear_mass = 0.0;
-        self.integrator = Integrator::new(&self.linear, build::settings(&self.params.solver));
+        self.integrator = build::integrator(&self.linear, &self.face, &self.params);
         equilibrium::settle(&self.linear, &self.face, pose, &mut self.state)?;
         self.motion = kinematics(&Segment::still(pose), 0.0);
         self.observe();

@@ -2,8 +2,9 @@
 
 use super::signals::{Outputs, STATIONS};
 use super::TreadBlock;
-use crate::contact::Traction;
-use crate::dynamics::{dense, Kinematics, Linear, State};
+use crate::contact::{face::padded, Traction};
+use crate::dynamics::tr_bdf2::contact_motion;
+use crate::dynamics::{Kinematics, Linear, State};
 use crate::mesh::Mesh;
 
 /// Quadratic interpolation from contact nodes to equidistant stations, with buffers.
@@ -23,6 +24,7 @@ impl Stations {
     /// Stations along the tread face of `mesh`.
     pub(super) fn along(mesh: &Mesh) -> Self {
         let nodes = mesh.x.len();
+        let stride = padded(nodes);
         let (first, last) = (mesh.x[0], mesh.x[nodes - 1]);
         let place = |k: usize| {
             let x = first + (last - first) * k as f64 / (STATIONS - 1) as f64;
@@ -34,11 +36,11 @@ impl Stations {
         Self {
             places: (0..STATIONS).map(place).collect(),
             traction: Traction::new(nodes),
-            u: vec![0.0; 2 * nodes],
-            v: vec![0.0; 2 * nodes],
-            compression: vec![0.0; nodes],
-            slip: vec![0.0; nodes],
-            lift: vec![0.0; nodes],
+            u: vec![0.0; 2 * stride],
+            v: vec![0.0; 2 * stride],
+            compression: vec![0.0; stride],
+            slip: vec![0.0; stride],
+            lift: vec![0.0; stride],
         }
     }
 
@@ -74,9 +76,9 @@ impl TreadBlock {
         let mut motion = self.motion;
         free_the_face(&self.linear, &self.state, &mut motion);
         self.contact_now(&motion);
-        let nodes = self.linear.nodes();
+        let (nodes, stride) = (self.linear.nodes, self.linear.stride);
         let (stations, out) = (&self.stations, &mut self.outputs);
-        let corner = |values: &[f64], node: usize| [values[node], values[nodes + node]];
+        let corner = |values: &[f64], node: usize| [values[node], values[stride + node]];
         out.run_in_displacement = corner(&stations.u, 0);
         out.run_in_velocity = corner(&stations.v, 0);
         out.run_out_displacement = corner(&stations.u, nodes - 1);
@@ -88,8 +90,8 @@ impl TreadBlock {
         } else {
             0.0
         };
-        let power = t.tangential.iter().zip(&stations.slip).map(|(f, v)| -f * v);
-        out.friction_power = power.sum();
+        out.friction_power =
+            t.tangential.iter().zip(&stations.slip).map(|(f, v)| -f * v).sum();
         out.pressure = stations.at(&t.pressure).map(|p| p.max(0.0));
         out.sliding_speed = stations.at(&stations.slip);
         shares(&self.face.area, stations, self.params.friction.smoothing_speed, out);
@@ -102,29 +104,21 @@ impl TreadBlock {
     /// Displacements, velocities and tractions of the contact nodes.
     fn contact_now(&mut self, motion: &Kinematics) {
         let (linear, st) = (&self.linear, &mut self.stations);
-        let nodes = linear.nodes();
-        st.u.fill(0.0);
-        st.v.fill(0.0);
-        dense::add_columns(&mut st.u, &linear.by_mode, &self.state.z);
-        dense::add_columns(&mut st.v, &linear.by_mode, &self.state.w);
+        let stride = linear.stride;
+        contact_motion(linear, &self.state.z, &mut st.u);
+        contact_motion(linear, &self.state.w, &mut st.v);
         let [sin, cos] = motion.sin_cos;
-        for i in 0..nodes {
-            let (x, z) = (linear.node_x[i] + st.u[i], linear.node_z + st.u[nodes + i]);
-            let (vx, vz) = (st.v[i], st.v[nodes + i]);
+        for i in 0..stride {
+            let (x, z) = (linear.node_x[i] + st.u[i], linear.node_z + st.u[stride + i]);
+            let (vx, vz) = (st.v[i], st.v[stride + i]);
             let (along, up) = (cos * x - sin * z, sin * x + cos * z);
             st.compression[i] =
                 -(motion.position[1] + up) - self.face.profile[i] - self.state.worn[i];
             st.slip[i] = motion.velocity[0] + cos * vx - sin * vz - motion.omega * up;
             st.lift[i] = motion.velocity[1] + sin * vx + cos * vz + motion.omega * along;
         }
-        self.face.evaluate(
-            &st.compression,
-            0.0,
-            &st.slip,
-            &st.lift,
-            &self.state.friction_factor,
-            &mut st.traction,
-        );
+        let factor = &self.state.friction_factor;
+        self.face.tractions(&st.compression, &st.slip, &st.lift, factor, &mut st.traction);
     }
 
     /// Force and moment on the belt: contact forces less what accelerates the block.
@@ -154,10 +148,10 @@ impl TreadBlock {
             out.contact_force[0] - (cos * rate[0] - sin * rate[1]),
             out.contact_force[1] - (sin * rate[0] + cos * rate[1]),
         ];
-        let (st, nodes) = (&self.stations, linear.nodes());
+        let st = &self.stations;
         let mut moment = -turning;
-        for i in 0..nodes {
-            let (x, z) = (linear.node_x[i] + st.u[i], linear.node_z + st.u[nodes + i]);
+        for i in 0..linear.nodes {
+            let (x, z) = (linear.node_x[i] + st.u[i], linear.node_z + st.u[linear.stride + i]);
             let (along, up) = (cos * x - sin * z, sin * x + cos * z);
             moment += up * st.traction.tangential[i] - along * st.traction.normal[i];
         }

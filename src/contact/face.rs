@@ -2,12 +2,17 @@
 
 use super::friction::{smoothed_sign, FrictionLaw, Law};
 use super::normal;
+use crate::pack::{Pack, LANES};
 use crate::params::Contact;
+use multiversion::multiversion;
 
-/// The tread face and the laws that hold on it.
+/// Gap [m] of the padding nodes that fill the last pack: out of reach of any road.
+const OUT_OF_REACH: f64 = 1e3;
+
+/// The tread face and the laws that hold on it. Vectors per node are padded to full packs.
 #[derive(Clone, Debug)]
 pub struct Face {
-    /// Area of each node [m²].
+    /// Area of each node [m²]; 0 in the padding.
     pub area: Vec<f64>,
     /// How far each node of the undeformed face lies behind the plane of the face [m].
     pub profile: Vec<f64>,
@@ -27,7 +32,7 @@ pub struct Face {
     pub damping: f64,
 }
 
-/// Forces of the road on the contact nodes and how they change, road frame.
+/// Forces of the road on the contact nodes and how they change, road frame; padded.
 #[derive(Clone, Debug, Default)]
 pub struct Traction {
     /// Tangential force [N].
@@ -44,10 +49,15 @@ pub struct Traction {
     pub pressure: Vec<f64>,
 }
 
+/// Number of nodes filled up to full packs.
+pub fn padded(nodes: usize) -> usize {
+    nodes.div_ceil(LANES) * LANES
+}
+
 impl Traction {
     /// Room for `nodes` contact nodes.
     pub fn new(nodes: usize) -> Self {
-        let zeros = || vec![0.0; nodes];
+        let zeros = || vec![0.0; padded(nodes)];
         Self {
             tangential: zeros(),
             normal: zeros(),
@@ -60,10 +70,38 @@ impl Traction {
 }
 
 impl Face {
-    /// Evaluates all nodes into `out`.
+    /// A face of the base model: flat, no adhesion, no contact damping.
+    pub fn new(area: &[f64], friction: Law, contact: &Contact, smoothing_speed: f64) -> Self {
+        let (nodes, size) = (area.len(), padded(area.len()));
+        let fill = |values: &[f64], rest: f64| {
+            let mut out = values.to_vec();
+            out.resize(size, rest);
+            out
+        };
+        Self {
+            area: fill(area, 0.0),
+            profile: fill(&vec![0.0; nodes], OUT_OF_REACH),
+            smoothing_speed,
+            friction,
+            contact: contact.clone(),
+            shear_strength: 0.0,
+            shear_smoothing: smoothing_speed,
+            pull_off: 0.0,
+            damping: 0.0,
+        }
+    }
+
+    /// Slope dp/du·area [N/m] of each node at the pressure `p` [Pa].
+    pub fn stiffness_at(&self, p: f64) -> Vec<f64> {
+        let slope = normal::pressure(&self.contact, normal::compression(&self.contact, p)).1;
+        self.area.iter().map(|area| area * slope).collect()
+    }
+
+    /// Evaluates all nodes into `out`; returns the highest pressure [Pa]. All slices are padded.
     ///
     /// `compression` [m] and its change per normal speed −`a` [s], `slip` and `lift` the speeds over
     /// and away from the road [m/s], `factor` what effects make of friction [-].
+    #[inline(always)]
     pub fn evaluate(
         &self,
         compression: &[f64],
@@ -72,57 +110,103 @@ impl Face {
         lift: &[f64],
         factor: &[f64],
         out: &mut Traction,
-    ) {
-        for i in 0..self.area.len() {
-            let (mut p, mut p_by_lift) = self.pressure(compression[i], a, lift[i]);
-            let area = self.area[i];
-            out.pressure[i] = p;
-            let touching = p > 0.0;
-            if !touching {
-                (p, p_by_lift) = (0.0, 0.0);
-            }
-            let mu = self.friction.mu(p, slip[i]);
-            let (mu_value, mu_slope) = (factor[i] * mu.value, factor[i] * mu.by_speed);
-            let by_pressure = mu_value + p * factor[i] * mu.by_pressure;
-            out.tangential[i] = -mu_value * p * area;
-            out.slip_slope[i] = mu_slope * p * area;
-            out.coupling[i] = by_pressure * p_by_lift * area;
-            out.normal[i] = p * area;
-            out.approach_slope[i] = -p_by_lift * area;
-            if touching {
-                self.adhere(i, p, p_by_lift, slip[i], out);
-            }
+    ) -> f64 {
+        let mut highest = Pack::splat(0.0);
+        for at in (0..self.area.len()).step_by(LANES) {
+            let read = |values: &[f64]| Pack::read(&values[at..at + LANES]);
+            let (slip, factor, area) = (read(slip), read(factor), read(&self.area));
+            let (p, p_by_lift) = self.pressure(read(compression), a, read(lift));
+            let mu = self.friction.mu(p, slip);
+            let value = factor * mu.value;
+            let by_pressure = value + p * factor * mu.by_pressure;
+            let mut t = Nodes {
+                tangential: -(value * p),
+                slip_slope: factor * mu.by_speed * p,
+                coupling: by_pressure * p_by_lift,
+                normal: p,
+                approach_slope: -p_by_lift,
+            };
+            self.adhere(p, p_by_lift, slip, &mut t);
+            let write = |to: &mut [f64], values: Pack| (values * area).write(&mut to[at..]);
+            write(&mut out.tangential, t.tangential);
+            write(&mut out.slip_slope, t.slip_slope);
+            write(&mut out.coupling, t.coupling);
+            write(&mut out.normal, t.normal);
+            write(&mut out.approach_slope, t.approach_slope);
+            p.write(&mut out.pressure[at..]);
+            highest = highest.max(p);
         }
+        highest.0.iter().copied().fold(0.0, f64::max)
+    }
+
+    /// [`Self::evaluate`] for the instruction set at hand.
+    pub fn tractions(
+        &self,
+        compression: &[f64],
+        slip: &[f64],
+        lift: &[f64],
+        factor: &[f64],
+        out: &mut Traction,
+    ) {
+        evaluate_now(self, compression, slip, lift, factor, out);
     }
 
     /// Pressure [Pa] and its derivative by the speed away from the road [Pa s/m].
-    fn pressure(&self, compression: f64, a: f64, lift: f64) -> (f64, f64) {
-        let (p, stiffness) = normal::pressure(&self.contact, compression);
-        let damped = 1.0 - self.damping * lift;
+    #[inline(always)]
+    fn pressure(&self, compression: Pack, a: f64, lift: Pack) -> (Pack, Pack) {
+        let (p, stiffness) = normal::pressures(&self.contact, compression);
+        let by_lift = stiffness * Pack::splat(-a);
         if self.damping == 0.0 {
-            (p, -a * stiffness)
-        } else if damped <= 0.0 {
-            (0.0, 0.0)
-        } else {
-            (p * damped, -a * stiffness * damped - self.damping * p)
+            return (p, by_lift);
         }
+        let (zero, k) = (Pack::splat(0.0), Pack::splat(self.damping));
+        let damped = Pack::splat(1.0) - k * lift;
+        (
+            damped.if_above(zero, p * damped, zero),
+            damped.if_above(zero, by_lift * damped - k * p, zero),
+        )
     }
 
-    /// Adds adhesion at node `i`: shear τ_a and pull p_a over the share 1 − exp(−p/p_r) of real
-    /// contact.
-    fn adhere(&self, i: usize, p: f64, p_by_lift: f64, slip: f64, out: &mut Traction) {
+    /// Adds adhesion: shear τ_a and pull p_a over the share 1 − exp(−p/p_r) of real contact.
+    #[inline(always)]
+    fn adhere(&self, p: Pack, p_by_lift: Pack, slip: Pack, t: &mut Nodes) {
         if self.shear_strength == 0.0 && self.pull_off == 0.0 {
             return;
         }
-        let p_r = self.contact.reference_pressure;
-        let share = 1.0 - (-p / p_r).exp();
-        let share_by_lift = (1.0 - share) / p_r * p_by_lift;
+        let per_pressure = Pack::splat(1.0 / self.contact.reference_pressure);
+        let free = (-(p * per_pressure)).exp();
+        let share = Pack::splat(1.0) - free;
+        let share_by_lift = free * per_pressure * p_by_lift;
         let (sign, slope) = smoothed_sign(slip, self.shear_smoothing);
-        let area = self.area[i];
-        out.tangential[i] -= self.shear_strength * share * sign * area;
-        out.slip_slope[i] += self.shear_strength * share * slope * area;
-        out.coupling[i] += self.shear_strength * share_by_lift * sign * area;
-        out.normal[i] -= self.pull_off * share * area;
-        out.approach_slope[i] += self.pull_off * share_by_lift * area;
+        let (shear, pull) = (Pack::splat(self.shear_strength), Pack::splat(self.pull_off));
+        t.tangential = t.tangential - shear * share * sign;
+        t.slip_slope = t.slip_slope + shear * share * slope;
+        t.coupling = t.coupling + shear * share_by_lift * sign;
+        t.normal = t.normal - pull * share;
+        t.approach_slope = t.approach_slope + pull * share_by_lift;
     }
+}
+
+#[multiversion(targets(
+    "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn evaluate_now(
+    face: &Face,
+    compression: &[f64],
+    slip: &[f64],
+    lift: &[f64],
+    factor: &[f64],
+    out: &mut Traction,
+) {
+    face.evaluate(compression, 0.0, slip, lift, factor, out);
+}
+
+/// Stresses of eight nodes and their slopes, see [`Traction`].
+struct Nodes {
+    tangential: Pack,
+    slip_slope: Pack,
+    coupling: Pack,
+    normal: Pack,
+    approach_slope: Pack,
 }

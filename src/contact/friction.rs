@@ -1,27 +1,34 @@
 //! Friction characteristic μ(p, v) with arctan smoothing at v = 0 (paper eq. 1, reconstructed).
 
 use super::friction_table::Table;
+use crate::pack::Pack;
 use crate::params::{Friction, FrictionForm};
 use std::f64::consts::{FRAC_2_PI, LN_10};
 
 /// Pressure below which the pressure dependence of friction stops [Pa].
 pub const MIN_PRESSURE: f64 = 1e3;
 
-/// Friction coefficient and its derivatives at one point.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+/// Friction coefficients and their derivatives at eight points.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mu {
     /// μ [-], odd in the sliding speed.
-    pub value: f64,
+    pub value: Pack,
     /// ∂μ/∂v [s/m].
-    pub by_speed: f64,
+    pub by_speed: Pack,
     /// ∂μ/∂p [1/Pa].
-    pub by_pressure: f64,
+    pub by_pressure: Pack,
 }
 
 /// A friction characteristic.
 pub trait FrictionLaw {
-    /// Coefficient at local pressure `p` [Pa] and sliding speed `v` [m/s].
-    fn mu(&self, p: f64, v: f64) -> Mu;
+    /// Coefficients at local pressures `p` [Pa] and sliding speeds `v` [m/s].
+    fn mu(&self, p: Pack, v: Pack) -> Mu;
+
+    /// Coefficient, ∂μ/∂v and ∂μ/∂p at one point.
+    fn at(&self, p: f64, v: f64) -> [f64; 3] {
+        let mu = self.mu(Pack::splat(p), Pack::splat(v));
+        [mu.value.0[0], mu.by_speed.0[0], mu.by_pressure.0[0]]
+    }
 }
 
 /// The law that the parameters ask for.
@@ -59,7 +66,8 @@ impl Law {
 }
 
 impl FrictionLaw for Law {
-    fn mu(&self, p: f64, v: f64) -> Mu {
+    #[inline(always)]
+    fn mu(&self, p: Pack, v: Pack) -> Mu {
         match self {
             Self::Exponential(law) => law.mu(p, v),
             Self::Rational(law) => law.mu(p, v),
@@ -93,29 +101,33 @@ impl Common {
     }
 
     /// `fall` is the falling part in [0, 1], `speed_slope` is |v|·d fall/d|v| (finite at v = 0).
-    fn mu(&self, p: f64, v: f64, fall: f64, speed_slope: f64) -> Mu {
+    #[inline(always)]
+    fn mu(&self, p: Pack, v: Pack, fall: Pack, speed_slope: Pack) -> Mu {
+        let splat = Pack::splat;
         let (sign, slope) = smoothed_sign(v, self.smoothing_speed);
-        let bounded = p.max(MIN_PRESSURE);
-        let by_p = (bounded / self.reference_pressure).powf(self.pressure_exponent);
-        let level = self.mu_inf + self.mu_drop * fall;
+        let least = splat(MIN_PRESSURE);
+        let bounded = p.max(least);
+        let by_p = (bounded * splat(1.0 / self.reference_pressure)).powf(self.pressure_exponent);
+        let level = fall.mul_add(splat(self.mu_drop), splat(self.mu_inf));
         // sign · d level/d|v| · d|v|/dv = (sign/v) · |v| d level/d|v|; sign/v → slope as v → 0.
-        let sign_over_v = if v.abs() < 1e-12 { slope } else { sign / v };
+        let tiny = splat(1e-12);
+        let sign_over_v = v.abs().if_above(tiny, sign / v, slope);
+        let value = by_p * sign * level;
+        let relative = value * splat(self.pressure_exponent) / bounded;
         Mu {
-            value: by_p * sign * level,
-            by_speed: by_p * (slope * level + sign_over_v * self.mu_drop * speed_slope),
-            by_pressure: if p > MIN_PRESSURE {
-                self.pressure_exponent / bounded * by_p * sign * level
-            } else {
-                0.0
-            },
+            value,
+            by_speed: by_p * (slope * level + sign_over_v * splat(self.mu_drop) * speed_slope),
+            by_pressure: p.if_above(least, relative, splat(0.0)),
         }
     }
 }
 
 /// Smoothed sign (2/π) atan(v/v_ε) and its derivative [s/m].
-pub fn smoothed_sign(v: f64, smoothing_speed: f64) -> (f64, f64) {
-    let ratio = v / smoothing_speed;
-    (FRAC_2_PI * ratio.atan(), FRAC_2_PI / (smoothing_speed * (1.0 + ratio * ratio)))
+#[inline(always)]
+pub fn smoothed_sign(v: Pack, smoothing_speed: f64) -> (Pack, Pack) {
+    let ratio = v * Pack::splat(1.0 / smoothing_speed);
+    let slope = Pack::splat(FRAC_2_PI / smoothing_speed);
+    (ratio.atan() * Pack::splat(FRAC_2_PI), slope / ratio.mul_add(ratio, Pack::splat(1.0)))
 }
 
 /// Stretched exponential: fall = exp(−(|v|/v_d)^γ).
@@ -126,12 +138,19 @@ pub struct Exponential {
 }
 
 impl FrictionLaw for Exponential {
-    fn mu(&self, p: f64, v: f64) -> Mu {
-        let ratio = v.abs() / self.common.decay_speed;
-        let power = if self.exponent == 1.0 { ratio } else { ratio.powf(self.exponent) };
+    #[inline(always)]
+    fn mu(&self, p: Pack, v: Pack) -> Mu {
+        let ratio = v.abs() * Pack::splat(1.0 / self.common.decay_speed);
+        let power = if self.exponent == 1.0 { ratio } else { power(ratio, self.exponent) };
         let fall = (-power).exp();
-        self.common.mu(p, v, fall, -self.exponent * power * fall)
+        self.common.mu(p, v, fall, -(Pack::splat(self.exponent) * power * fall))
     }
+}
+
+/// `ratio` ≥ 0 to the power `exponent` > 0, 0 at 0.
+#[inline(always)]
+fn power(ratio: Pack, exponent: f64) -> Pack {
+    ratio.max(Pack::splat(1e-290)).powf(exponent)
 }
 
 /// Rational: fall = 1/(1 + (|v|/v_d)^m); the form of Huemer et al. (2001) with its rising branch left
@@ -143,10 +162,12 @@ pub struct Rational {
 }
 
 impl FrictionLaw for Rational {
-    fn mu(&self, p: f64, v: f64) -> Mu {
-        let power = (v.abs() / self.common.decay_speed).powf(self.exponent);
-        let fall = 1.0 / (1.0 + power);
-        self.common.mu(p, v, fall, -self.exponent * power * fall * fall)
+    #[inline(always)]
+    fn mu(&self, p: Pack, v: Pack) -> Mu {
+        let ratio = v.abs() * Pack::splat(1.0 / self.common.decay_speed);
+        let power = power(ratio, self.exponent);
+        let fall = Pack::splat(1.0) / (power + Pack::splat(1.0));
+        self.common.mu(p, v, fall, -(Pack::splat(self.exponent) * power * fall * fall))
     }
 }
 
@@ -158,10 +179,13 @@ pub struct LogBell {
 }
 
 impl FrictionLaw for LogBell {
-    fn mu(&self, p: f64, v: f64) -> Mu {
-        let decades = (v.abs().max(1e-12) / self.common.decay_speed).log10();
-        let fall = (-(self.steepness * decades).powi(2)).exp();
-        let slope = -2.0 * self.steepness * self.steepness * decades / LN_10 * fall;
+    #[inline(always)]
+    fn mu(&self, p: Pack, v: Pack) -> Mu {
+        let ratio = v.abs().max(Pack::splat(1e-12)) * Pack::splat(1.0 / self.common.decay_speed);
+        let decades = ratio.ln() * Pack::splat(1.0 / LN_10);
+        let scaled = decades * Pack::splat(self.steepness);
+        let fall = (-(scaled * scaled)).exp();
+        let slope = scaled * fall * Pack::splat(-2.0 * self.steepness / LN_10);
         self.common.mu(p, v, fall, slope)
     }
 }
@@ -188,12 +212,12 @@ mod tests {
             for p in [3e3, 80e3, 260e3, 900e3] {
                 for v in [-1.3, -0.02, -1.1e-3, 2e-4, 5e-3, 0.11, 0.7] {
                     let (hp, hv) = (1e-6 * p, 1e-6 * v);
-                    let mu = law.mu(p, v);
-                    let by_v = (law.mu(p, v + hv).value - law.mu(p, v - hv).value) / (2.0 * hv);
-                    let by_p = (law.mu(p + hp, v).value - law.mu(p - hp, v).value) / (2.0 * hp);
-                    let scale_v = mu.value.abs() / v.abs();
-                    assert!((by_v - mu.by_speed).abs() < 1e-5 * scale_v, "{law:?} p {p} v {v}");
-                    assert!((by_p - mu.by_pressure).abs() < 1e-5 * mu.value.abs() / p, "{law:?} {p}");
+                    let [mu, by_speed, by_pressure] = law.at(p, v);
+                    let by_v = (law.at(p, v + hv)[0] - law.at(p, v - hv)[0]) / (2.0 * hv);
+                    let by_p = (law.at(p + hp, v)[0] - law.at(p - hp, v)[0]) / (2.0 * hp);
+                    let (scale_v, scale_p) = (mu.abs() / v.abs(), mu.abs() / p);
+                    assert!((by_v - by_speed).abs() < 1e-5 * scale_v, "{law:?} p {p} v {v}");
+                    assert!((by_p - by_pressure).abs() < 1e-5 * scale_p, "{law:?} p {p} v {v}");
                 }
             }
         }
@@ -203,7 +227,7 @@ mod tests {
     fn friction_is_odd_in_speed_and_opposes_it() {
         for law in laws() {
             for v in [1e-4, 0.01, 0.3, 2.0] {
-                let (forth, back) = (law.mu(250e3, v).value, law.mu(250e3, -v).value);
+                let (forth, back) = (law.at(250e3, v)[0], law.at(250e3, -v)[0]);
                 assert!((forth + back).abs() < 1e-14 && forth > 0.0, "{law:?} at {v}");
             }
         }
@@ -216,6 +240,6 @@ mod tests {
             * (1.6_f64).powf(-0.1)
             * (0.5 + 0.75 * (-2.0_f64 / 3.0).exp());
         let law = Law::new(&Friction::default(), None);
-        assert!((law.mu(400e3, 0.2).value - by_hand).abs() < 1e-14);
+        assert!((law.at(400e3, 0.2)[0] - by_hand).abs() < 1e-14);
     }
 }

@@ -2,6 +2,7 @@
 
 use super::friction::{smoothed_sign, FrictionLaw, Mu};
 use crate::error::{Fault, Problem};
+use crate::pack::{Pack, LANES};
 
 /// μ over a grid of pressure and sliding speed, bilinear in pressure and the logarithm of speed;
 /// constant beyond the grid. The smoothed sign makes it odd and continuous at v = 0.
@@ -111,10 +112,18 @@ fn locate(axis: &[f64], x: f64) -> (usize, f64, f64) {
 }
 
 impl FrictionLaw for Table {
-    fn mu(&self, p: f64, v: f64) -> Mu {
+    #[inline(always)]
+    fn mu(&self, p: Pack, v: Pack) -> Mu {
         let (sign, slope) = smoothed_sign(v, self.smoothing_speed);
-        let (level, by_pressure, by_log_v) = self.level(p, v.abs().max(1e-300).ln());
-        let sign_over_v = if v.abs() < 1e-12 { slope } else { sign / v };
+        let tiny = Pack::splat(1e-12);
+        let log_v = v.abs().max(tiny).ln();
+        let mut level = [[0.0; LANES]; 3];
+        for i in 0..LANES {
+            let (value, by_pressure, by_log_v) = self.level(p.0[i], log_v.0[i]);
+            (level[0][i], level[1][i], level[2][i]) = (value, by_pressure, by_log_v);
+        }
+        let [level, by_pressure, by_log_v] = level.map(Pack);
+        let sign_over_v = v.abs().if_above(tiny, sign / v, slope);
         Mu {
             value: sign * level,
             by_speed: slope * level + sign_over_v * by_log_v,

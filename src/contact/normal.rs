@@ -1,29 +1,37 @@
 //! Nonlinear contact stiffness: pressure over local compression (paper eq. 2).
 
+use crate::pack::Pack;
 use crate::params::{Contact, ContactForm};
 
 /// Pressure p [Pa] and stiffness dp/du [Pa/m] at a compression u [m]; both 0 for u ≤ 0 (lift-off).
 ///
 /// Exponential: p = p_r (exp(u/u₀) − 1), after the logarithmic law of tyre-road contact (Wang et
 /// al., Tribol. Lett. 56, 2014). Power: p = p_r (u/u₀)^m.
-pub fn pressure(law: &Contact, compression: f64) -> (f64, f64) {
-    if compression <= 0.0 {
-        return (0.0, 0.0);
-    }
-    let (p_r, ratio) = (law.reference_pressure, compression / law.depth);
-    match law.form {
+#[inline(always)]
+pub fn pressures(law: &Contact, compression: Pack) -> (Pack, Pack) {
+    let splat = Pack::splat;
+    let (p_r, zero) = (law.reference_pressure, splat(0.0));
+    let ratio = compression * splat(1.0 / law.depth);
+    let (p, stiffness) = match law.form {
         ContactForm::Exponential => {
             // Beyond 40 e-folds the tangent continues: no solver iterate may overflow.
-            let bounded = ratio.min(40.0);
+            let bounded = ratio.min(splat(40.0));
             let grown = bounded.exp();
-            let beyond = grown * (ratio - bounded);
-            (p_r * (grown - 1.0 + beyond), p_r * grown / law.depth)
+            let p = grown - splat(1.0) + grown * (ratio - bounded);
+            (p * splat(p_r), grown * splat(p_r / law.depth))
         }
         ContactForm::Power => {
-            let m = law.exponent;
-            (p_r * ratio.powf(m), p_r * m * ratio.powf(m - 1.0) / law.depth)
+            let lower = ratio.max(splat(1e-200)).powf(law.exponent - 1.0);
+            (ratio * lower * splat(p_r), lower * splat(p_r * law.exponent / law.depth))
         }
-    }
+    };
+    (compression.if_above(zero, p, zero), compression.if_above(zero, stiffness, zero))
+}
+
+/// [`pressures`] at one compression.
+pub fn pressure(law: &Contact, compression: f64) -> (f64, f64) {
+    let (p, stiffness) = pressures(law, Pack::splat(compression));
+    (p.0[0], stiffness.0[0])
 }
 
 /// Compression u [m] at which the law gives `pressure` [Pa].

@@ -1,7 +1,8 @@
 //! Energy ledger: what the belt put in and where it went.
 
+use super::kinematics::{to_block, Kinematics};
 use super::linear::Linear;
-use super::stage::{to_block, Kinematics, Stage};
+use super::stage::Stage;
 use super::state::State;
 use crate::contact::{normal, Face};
 
@@ -58,14 +59,14 @@ pub(super) struct Power {
 
 /// Powers at the end of a solved stage.
 pub(super) fn power(linear: &Linear, stage: &Stage, motion: &Kinematics) -> Power {
-    let nodes = linear.nodes();
     let mut out = Power::default();
     let [sin, cos] = motion.sin_cos;
     let free = |axis| linear.is_free(axis);
-    for i in 0..nodes {
-        let (fx, fz) = (stage.force[i], stage.force[nodes + i]);
+    for i in 0..linear.nodes {
+        let at = linear.stride + i;
+        let (fx, fz) = (stage.force[i], stage.force[at]);
         let (tangential, normal) = (cos * fx - sin * fz, sin * fx + cos * fz);
-        let (vx, vz) = (stage.v[i], stage.v[nodes + i]);
+        let (vx, vz) = (stage.v[i], stage.v[at]);
         let own_x = cos * vx - sin * vz;
         let [carried_x, carried_z] = stage.carried(i);
         out.friction -= tangential * (own_x + carried_x);

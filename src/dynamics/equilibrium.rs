@@ -22,7 +22,7 @@ const LARGEST_CHANGE: f64 = 2.0;
 /// # Errors
 /// [`Fault::NoConvergence`] if there is none.
 pub fn settle(linear: &Linear, face: &Face, pose: Pose, state: &mut State) -> Result<(), Fault> {
-    let nodes = linear.nodes();
+    let nodes = linear.nodes;
     let size = 2 * nodes;
     let up = in_block_frame(1, pose.angle);
     let free = linear.base.iter().position(|b| b.axis == 1);
@@ -88,14 +88,16 @@ fn compression(
     up: [f64; 2],
     i: usize,
 ) -> f64 {
-    let (x, z) = (linear.node_x[i] + u[i], linear.node_z + u[linear.nodes() + i]);
+    let (x, z) = (linear.node_x[i] + u[i], linear.node_z + u[linear.nodes + i]);
     -(height + up[0] * x + up[1] * z) - face.profile[i] - state.worn[i]
 }
 
 /// Static compliance of the contact degrees of freedom [m/N].
 fn compliance(linear: &Linear, stiffness_factor: f64) -> DMatrix<f64> {
-    let size = 2 * linear.nodes();
-    let modes = DMatrix::from_column_slice(size, linear.modes(), &linear.by_mode);
+    let (nodes, stride) = (linear.nodes, linear.stride);
+    let modes = DMatrix::from_fn(2 * nodes, linear.modes(), |c, m| {
+        linear.by_mode[2 * m * stride + c / nodes * stride + c % nodes]
+    });
     let mut weighted = modes.clone();
     for (mut column, omega2) in weighted.column_iter_mut().zip(&linear.omega2) {
         column /= omega2 * stiffness_factor;
@@ -110,7 +112,7 @@ fn start_height(linear: &Linear, face: &Face, pose: Pose, free: bool) -> f64 {
     }
     let area: f64 = face.area.iter().sum();
     let nearest = face.profile.iter().copied().fold(f64::INFINITY, f64::min);
-    let tilt = pose.angle.sin().abs() * linear.node_x.last().copied().unwrap_or(0.0);
+    let tilt = pose.angle.sin().abs() * linear.node_x[linear.nodes - 1];
     let mean = normal::compression(&face.contact, pose.load / area);
     -linear.node_z * pose.angle.cos() + tilt - nearest - mean
 }
@@ -124,16 +126,17 @@ fn store(
     up: [f64; 2],
     free: Option<usize>,
 ) {
-    let nodes = linear.nodes();
-    let mut force = vec![0.0; 2 * nodes];
+    let nodes = linear.nodes;
+    let stride = linear.stride;
+    let mut force = vec![0.0; 2 * stride];
     for i in 0..nodes {
         let c = compression(linear, face, state, u, height, up, i);
         let f = normal::pressure(&face.contact, c).0 * face.area[i];
         force[i] = f * up[0];
-        force[nodes + i] = f * up[1];
+        force[stride + i] = f * up[1];
     }
     for m in 0..linear.modes() {
-        let mode = &linear.by_mode[2 * m * nodes..2 * (m + 1) * nodes];
+        let mode = &linear.by_mode[2 * m * stride..2 * (m + 1) * stride];
         let load: f64 = mode.iter().zip(&force).map(|(phi, f)| phi * f).sum();
         state.z[m] = load / (linear.omega2[m] * state.stiffness_factor);
     }

@@ -1,5 +1,6 @@
 //! The linear part of the block in SI units: decoupled modes of the clamped block and its carriage.
 
+use crate::contact::face::padded;
 use crate::params::{NormalDrive, Params};
 use crate::reduction::Reduction;
 
@@ -25,6 +26,9 @@ pub struct Branch {
     pub time: f64,
 }
 
+/// Vectors per mode and per contact node are padded to full packs: modes that couple to nothing,
+/// nodes out of reach of the road.
+///
 /// z̈ + βω²ż + ω²(z + Σ gⱼ(z − yⱼ)) = Φᵀf − Γ·a, ẏⱼ = (z − yⱼ)/τⱼ, per mode (theory eq. 3.1).
 #[derive(Clone, Debug)]
 pub struct Linear {
@@ -32,9 +36,13 @@ pub struct Linear {
     pub omega2: Vec<f64>,
     /// Stiffness-proportional damping β [s].
     pub damping: f64,
-    /// Contact displacements per mode [kg^−1/2]: mode m at `m * 2 * nodes`, x of all nodes then z.
+    /// Number of contact nodes.
+    pub nodes: usize,
+    /// The same, padded.
+    pub stride: usize,
+    /// Contact displacements per mode [kg^−1/2]: mode m at `m * 2 * stride`, x of all nodes then z.
     pub by_mode: Vec<f64>,
-    /// The transpose: contact displacement c at `c * modes`.
+    /// The transpose: contact displacement c (of 2 · stride) at `c * modes`.
     pub by_contact: Vec<f64>,
     /// Coupling Γ [kg^1/2] to the acceleration of the clamped face: x, z, rotation.
     pub coupling: [Vec<f64>; 3],
@@ -56,16 +64,22 @@ impl Linear {
         let rubber = &params.rubber;
         let linear_density = rubber.density * params.block.width;
         let scale = linear_density.sqrt();
-        let (modes, contact) = (reduction.modes(), 2 * reduction.contact_nodes());
-        let mut by_mode = vec![0.0; modes * contact];
-        let mut by_contact = vec![0.0; modes * contact];
-        for m in 0..modes {
-            for c in 0..contact {
+        let (nodes, modes) = (reduction.contact_nodes(), padded(reduction.modes()));
+        let stride = padded(nodes);
+        let mut by_mode = vec![0.0; modes * 2 * stride];
+        let mut by_contact = vec![0.0; modes * 2 * stride];
+        for m in 0..reduction.modes() {
+            for c in 0..2 * nodes {
                 let value = reduction.contact_modes[(c, m)] / scale;
-                by_mode[m * contact + c] = value;
-                by_contact[c * modes + m] = value;
+                let place = c / nodes * stride + c % nodes;
+                by_mode[m * 2 * stride + place] = value;
+                by_contact[place * modes + m] = value;
             }
         }
+        let fill = |mut values: Vec<f64>, size: usize, rest: f64| {
+            values.resize(size, rest);
+            values
+        };
         let e_over_rho = rubber.young_modulus / rubber.density;
         let mut base = Vec::new();
         if params.drive.normal == NormalDrive::Load {
@@ -78,29 +92,30 @@ impl Linear {
             });
         }
         Self {
-            omega2: reduction.lambda.iter().map(|l| l * e_over_rho).collect(),
+            omega2: fill(
+                reduction.lambda.iter().map(|l| l * e_over_rho).collect(),
+                modes,
+                1.0,
+            ),
+            nodes,
+            stride,
             damping: rubber.stiffness_damping,
             by_mode,
             by_contact,
             coupling: std::array::from_fn(|r| {
-                reduction.coupling[r].iter().map(|g| g * scale).collect()
+                fill(reduction.coupling[r].iter().map(|g| g * scale).collect(), modes, 0.0)
             }),
             block_mass: linear_density * params.block.length * params.block.height,
-            node_x: reduction.mesh.x.clone(),
+            node_x: fill(reduction.mesh.x.clone(), stride, 0.0),
             node_z: -params.block.height,
             base,
             branches: Vec::new(),
         }
     }
 
-    /// Number of modes.
+    /// Number of modes, padded.
     pub fn modes(&self) -> usize {
         self.omega2.len()
-    }
-
-    /// Number of contact nodes.
-    pub fn nodes(&self) -> usize {
-        self.node_x.len()
     }
 
     /// Is the clamped face free along `axis`?
@@ -110,6 +125,7 @@ impl Linear {
 
     /// Coupling of mode `m` to a unit acceleration of the clamped face along a direction that is
     /// (`x`, `z`) in the block's frame.
+    #[inline(always)]
     pub fn coupling_along(&self, m: usize, [x, z]: [f64; 2]) -> f64 {
         self.coupling[0][m] * x + self.coupling[1][m] * z
     }

@@ -17,9 +17,11 @@ pub struct StageMatrices {
     pub s: Vec<f64>,
     /// a·ω²·κ per mode [1/s]; κ = stiffness factor and branches as the stage sees them.
     pub a_omega2: Vec<f64>,
-    /// W⁻¹ [N s/m], W = a Φ s Φᵀ + a q N⁻¹ qᵀ the Delassus matrix: contact velocities per contact
-    /// force, both in the block's frame, x of all nodes then z.
+    /// S = W⁻¹ [N s/m], W = a Φ s Φᵀ + a q N⁻¹ qᵀ the Delassus matrix: contact velocities per contact
+    /// force, both in the block's frame, x of all nodes then z, without padding.
     pub inverse_delassus: Vec<f64>,
+    /// S split for a block that is not turned.
+    pub flat: FlatMatrices,
     /// Coupling Γ̃ to each free direction of the clamped face, direction after direction.
     pub base_coupling: Vec<f64>,
     /// q = e − Φ s Γ̃ per free direction: motion of the contact nodes per velocity of the face.
@@ -28,19 +30,44 @@ pub struct StageMatrices {
     pub n_inverse: [f64; 4],
 }
 
+/// S = [S_tt S_tn; S_nt S_nn] with the normal velocities eliminated (theory eq. 3.9): columns of
+/// `stride` numbers.
+#[derive(Clone, Debug)]
+pub struct FlatMatrices {
+    /// Slope of the normal force by the normal velocity that the elimination assumes, per node
+    /// [N s/m].
+    pub normal_slope: Vec<f64>,
+    /// A⁻¹ = (S_nn + normal slope)⁻¹, symmetric.
+    pub a_inverse: Vec<f64>,
+    /// P = S_tn A⁻¹.
+    pub p: Vec<f64>,
+    /// Pᵀ.
+    pub p_transposed: Vec<f64>,
+    /// B = S_tt − P S_nt, symmetric.
+    pub b: Vec<f64>,
+}
+
 impl StageMatrices {
     /// Room for the matrices of `linear`.
     pub fn new(linear: &Linear) -> Self {
-        let (modes, contact) = (linear.modes(), 2 * linear.nodes());
+        let (modes, stride) = (linear.modes(), linear.stride);
+        let square = || vec![0.0; stride * stride];
         Self {
             a: 0.0,
             stiffness_factor: 1.0,
             angle: 0.0,
             s: vec![0.0; modes],
             a_omega2: vec![0.0; modes],
-            inverse_delassus: vec![0.0; contact * contact],
+            inverse_delassus: vec![0.0; 4 * linear.nodes * linear.nodes],
+            flat: FlatMatrices {
+                normal_slope: vec![0.0; stride],
+                a_inverse: square(),
+                p: square(),
+                p_transposed: square(),
+                b: square(),
+            },
             base_coupling: vec![0.0; 2 * modes],
-            q: vec![0.0; 2 * contact],
+            q: vec![0.0; 4 * stride],
             n_inverse: [0.0; 4],
         }
     }
@@ -52,8 +79,16 @@ impl StageMatrices {
             && (linear.base.is_empty() || self.angle == angle)
     }
 
-    /// Computes them (theory eqs. 3.5 to 3.8); `false` if the block is numerically singular.
-    pub fn compute(&mut self, linear: &Linear, a: f64, stiffness_factor: f64, angle: f64) -> bool {
+    /// Computes them (theory eqs. 3.5 to 3.9); `stiffness` is the slope dp/du·area of the contact
+    /// per node [N/m] that the elimination assumes. `false` if the block is numerically singular.
+    pub fn compute(
+        &mut self,
+        linear: &Linear,
+        a: f64,
+        stiffness_factor: f64,
+        angle: f64,
+        stiffness: &[f64],
+    ) -> bool {
         (self.a, self.stiffness_factor, self.angle) = (a, stiffness_factor, angle);
         let kappa = stiffness_factor
             + linear.branches.iter().map(|b| b.share / (1.0 + a / b.time)).sum::<f64>();
@@ -63,24 +98,26 @@ impl StageMatrices {
         }
         self.free_face(linear, a, angle);
         self.delassus(linear, a);
-        dense::invert(&mut self.inverse_delassus, 2 * linear.nodes())
+        dense::invert(&mut self.inverse_delassus, 2 * linear.nodes)
+            && self.flat.split(&self.inverse_delassus, a, stiffness, linear.nodes, linear.stride)
     }
 
     /// Γ̃, q and N⁻¹.
     fn free_face(&mut self, linear: &Linear, a: f64, angle: f64) {
-        let (modes, nodes) = (linear.modes(), linear.nodes());
+        let (modes, stride) = (linear.modes(), linear.stride);
         let mut n = [0.0; 4];
         for (j, dof) in linear.base.iter().enumerate() {
             let direction = in_block_frame(dof.axis, angle);
             let coupling = &mut self.base_coupling[j * modes..(j + 1) * modes];
-            let q = &mut self.q[2 * j * nodes..2 * (j + 1) * nodes];
+            let q = &mut self.q[2 * j * stride..2 * (j + 1) * stride];
+            q.fill(0.0);
             for (axis, component) in direction.iter().enumerate() {
-                q[axis * nodes..(axis + 1) * nodes].fill(*component);
+                q[axis * stride..axis * stride + linear.nodes].fill(*component);
             }
             for m in 0..modes {
                 coupling[m] = linear.coupling_along(m, direction);
                 let weight = self.s[m] * coupling[m];
-                let mode = &linear.by_mode[2 * m * nodes..2 * (m + 1) * nodes];
+                let mode = &linear.by_mode[2 * m * stride..2 * (m + 1) * stride];
                 for (q, phi) in q.iter_mut().zip(mode) {
                     *q -= weight * phi;
                 }
@@ -111,22 +148,63 @@ impl StageMatrices {
 
     /// W into `inverse_delassus`, not yet inverted.
     fn delassus(&mut self, linear: &Linear, a: f64) {
-        let (modes, contact) = (linear.modes(), 2 * linear.nodes());
+        let (nodes, stride) = (linear.nodes, linear.stride);
         let w = &mut self.inverse_delassus;
         w.fill(0.0);
-        for m in 0..modes {
-            let mode = &linear.by_mode[m * contact..(m + 1) * contact];
-            add_outer(w, mode, mode, a * self.s[m]);
+        for (m, mode) in linear.by_mode.chunks_exact(2 * stride).enumerate() {
+            add_outer(w, mode, mode, a * self.s[m], nodes, stride);
         }
         for j in 0..linear.base.len() {
             for k in 0..linear.base.len() {
-                let (left, right) = (
-                    &self.q[j * contact..(j + 1) * contact],
-                    &self.q[k * contact..(k + 1) * contact],
-                );
-                add_outer(w, left, right, a * self.n_inverse[2 * j + k]);
+                let left = &self.q[2 * j * stride..2 * (j + 1) * stride];
+                let right = &self.q[2 * k * stride..2 * (k + 1) * stride];
+                add_outer(w, left, right, a * self.n_inverse[2 * j + k], nodes, stride);
             }
         }
+    }
+}
+
+impl FlatMatrices {
+    fn split(&mut self, s: &[f64], a: f64, stiffness: &[f64], n: usize, stride: usize) -> bool {
+        let full = |i: usize, j: usize| s[i * 2 * n + j];
+        for (slope, k) in self.normal_slope.iter_mut().zip(stiffness) {
+            *slope = a * k;
+        }
+        // A in the compact corner of `b`'s room, inverted there.
+        let room = &mut self.b[..n * n];
+        for i in 0..n {
+            for j in 0..n {
+                room[i * n + j] = full(n + i, n + j);
+            }
+            room[i * n + i] += self.normal_slope[i];
+        }
+        if !dense::invert(room, n) {
+            return false;
+        }
+        self.a_inverse.fill(0.0);
+        for i in 0..n {
+            self.a_inverse[i * stride..i * stride + n].copy_from_slice(&room[i * n..(i + 1) * n]);
+        }
+        for matrix in [&mut self.p, &mut self.p_transposed, &mut self.b] {
+            matrix.fill(0.0);
+        }
+        for i in 0..n {
+            for j in 0..n {
+                let p: f64 = (0..n).map(|k| full(i, n + k) * self.a_inverse[k * stride + j]).sum();
+                // Column-major: column j holds the rows i.
+                self.p[j * stride + i] = p;
+                self.p_transposed[i * stride + j] = p;
+            }
+        }
+        for i in 0..n {
+            for j in 0..=i {
+                let sum: f64 =
+                    (0..n).map(|k| self.p[k * stride + i] * full(n + k, j)).sum();
+                self.b[i * stride + j] = full(i, j) - sum;
+                self.b[j * stride + i] = full(i, j) - sum;
+            }
+        }
+        true
     }
 }
 
@@ -140,11 +218,22 @@ pub fn in_block_frame(axis: usize, angle: f64) -> [f64; 2] {
     }
 }
 
-/// `matrix` += `factor` · `left` `right`ᵀ.
-fn add_outer(matrix: &mut [f64], left: &[f64], right: &[f64], factor: f64) {
-    for (row, l) in matrix.chunks_exact_mut(right.len()).zip(left) {
-        let weight = factor * l;
-        for (value, r) in row.iter_mut().zip(right) {
+/// `matrix` (without padding) += `factor` · `left` `right`ᵀ (padded).
+fn add_outer(
+    matrix: &mut [f64],
+    left: &[f64],
+    right: &[f64],
+    factor: f64,
+    nodes: usize,
+    stride: usize,
+) {
+    for (c, row) in matrix.chunks_exact_mut(2 * nodes).enumerate() {
+        let weight = factor * left[c / nodes * stride + c % nodes];
+        let (x, z) = row.split_at_mut(nodes);
+        for (value, r) in x.iter_mut().zip(right) {
+            *value += weight * r;
+        }
+        for (value, r) in z.iter_mut().zip(&right[stride..]) {
             *value += weight * r;
         }
     }

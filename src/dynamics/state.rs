@@ -36,7 +36,7 @@ pub struct State {
 impl State {
     /// At rest, undeformed.
     pub fn new(linear: &Linear) -> Self {
-        let (modes, nodes) = (linear.modes(), linear.nodes());
+        let (modes, nodes) = (linear.modes(), linear.stride);
         Self {
             time: 0.0,
             z: vec![0.0; modes],

@@ -5,13 +5,15 @@
 
 use super::dense;
 use super::energy::{self, Power};
+use super::kinematics::{kinematics, to_block, Kinematics};
 use super::linear::Linear;
 use super::matrices::StageMatrices;
-use super::stage::{to_block, Convergence, Kinematics, Stage};
+use super::stage::{Convergence, Stage};
 use super::state::State;
 use crate::contact::Face;
 use crate::drive::Segment;
 use crate::error::Fault;
+use multiversion::multiversion;
 use std::f64::consts::SQRT_2;
 
 /// γ: the first stage ends at γh.
@@ -60,7 +62,7 @@ struct Middle {
 impl TrBdf2 {
     /// Room for steps of `linear`.
     pub fn new(linear: &Linear) -> Self {
-        let (modes, contact) = (linear.modes(), 2 * linear.nodes());
+        let (modes, contact) = (linear.modes(), 2 * linear.stride);
         Self {
             stage: Stage::new(linear),
             iterations: 0,
@@ -76,7 +78,7 @@ impl TrBdf2 {
             },
             u: vec![0.0; contact],
             v: vec![0.0; contact],
-            gap: vec![0.0; linear.nodes()],
+            gap: vec![0.0; linear.stride],
             trial: State::new(linear),
             inertia: [[0.0; 2]; 3],
             face_velocity: [0.0; 2],
@@ -87,10 +89,8 @@ impl TrBdf2 {
     /// Contact displacements and velocities from the modal state, so that a restored state goes on
     /// with the same bits.
     pub fn start_from(&mut self, linear: &Linear, state: &State) {
-        self.u.fill(0.0);
-        self.v.fill(0.0);
-        dense::add_columns(&mut self.u, &linear.by_mode, &state.z);
-        dense::add_columns(&mut self.v, &linear.by_mode, &state.w);
+        contact_motion(linear, &state.z, &mut self.u);
+        contact_motion(linear, &state.w, &mut self.v);
     }
 
     /// Steps from `from` [s] after the start of the segment by `h` [s].
@@ -111,13 +111,7 @@ impl TrBdf2 {
         self.a = matrices.a;
         let ends = [from, from + GAMMA * h, from + h].map(|s| kinematics(segment, s));
         self.inertia = [0, 1, 2].map(|k| inertia(linear, &ends[k]));
-        for ((gap, profile), worn) in self.gap.iter_mut().zip(&face.profile).zip(&state.worn) {
-            *gap = profile + worn;
-        }
-        self.first_stage(linear, face, state, matrices, &ends)?;
-        self.second_stage(linear, face, state, matrices, &ends, h)?;
-        self.write_trial(linear, &ends[2]);
-        Ok(())
+        both_stages(self, linear, face, state, matrices, &ends, h)
     }
 
     /// Makes the trial the state.
@@ -138,6 +132,7 @@ impl TrBdf2 {
     }
 
     /// Trapezoidal rule from t to t + γh.
+    #[inline(always)]
     fn first_stage(
         &mut self,
         linear: &Linear,
@@ -163,7 +158,7 @@ impl TrBdf2 {
             stage.base[j] = state.base[j] + a * state.base_velocity[j];
             stage.base_velocity[j] = state.base_velocity[j] + a * state.base_acceleration[j];
         }
-        let nodes = linear.nodes();
+        let nodes = linear.stride;
         let face_velocity = free_face_velocity(linear, &ends[0], &state.base_velocity);
         for c in 0..2 * nodes {
             stage.u[c] = self.u[c] + a * self.v[c];
@@ -206,6 +201,7 @@ impl TrBdf2 {
     }
 
     /// BDF2-like stage to t + h.
+    #[inline(always)]
     fn second_stage(
         &mut self,
         linear: &Linear,
@@ -215,7 +211,7 @@ impl TrBdf2 {
         ends: &[Kinematics; 3],
         h: f64,
     ) -> Result<(), Fault> {
-        let (modes, nodes) = (linear.modes(), linear.nodes());
+        let (modes, nodes) = (linear.modes(), linear.stride);
         let (weight, a) = (W * h, matrices.a);
         let (stage, middle) = (&mut self.stage, &self.middle);
         let inertia_start = self.inertia[0];
@@ -238,6 +234,8 @@ impl TrBdf2 {
         }
         for c in 0..2 * nodes {
             stage.u[c] = self.u[c] + weight * (self.v[c] + middle.v[c]);
+            // First guess: the change of the first stage goes on.
+            stage.v[c] += (1.0 - GAMMA) / GAMMA * (middle.v[c] - self.v[c]);
         }
         let solved = stage.solve(
             linear,
@@ -255,6 +253,7 @@ impl TrBdf2 {
     }
 
     /// The state at the end of the step.
+    #[inline(always)]
     fn write_trial(&mut self, linear: &Linear, end: &Kinematics) {
         let (modes, a) = (linear.modes(), self.a);
         let (stage, trial) = (&self.stage, &mut self.trial);
@@ -318,17 +317,38 @@ impl TrBdf2 {
     }
 }
 
-/// Prescribed motion at `s` [s] after the start of the segment.
-pub fn kinematics(segment: &Segment, s: f64) -> Kinematics {
-    let (sin, cos) = segment.angle.at(s).sin_cos();
-    Kinematics {
-        position: [segment.x.at(s), segment.z.at(s)],
-        velocity: [segment.x.rate(s), segment.z.rate(s)],
-        acceleration: [segment.x.curvature(s), segment.z.curvature(s)],
-        sin_cos: [sin, cos],
-        omega: segment.angle.rate(s),
-        load: segment.load.at(s),
+/// Contact displacements Φ·`modal` without padding effects, for the instruction set at hand.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+pub fn contact_motion(linear: &Linear, modal: &[f64], out: &mut [f64]) {
+    out.fill(0.0);
+    dense::add_columns(out, &linear.by_mode, modal);
+}
+
+/// The work of a step, compiled for several instruction sets of which the machine's best is taken;
+/// all give the same bits, because sums have a fixed order and fused operations are spelled out.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn both_stages(
+    step: &mut TrBdf2,
+    linear: &Linear,
+    face: &Face,
+    state: &State,
+    matrices: &StageMatrices,
+    ends: &[Kinematics; 3],
+    h: f64,
+) -> Result<(), Fault> {
+    for ((gap, profile), worn) in step.gap.iter_mut().zip(&face.profile).zip(&state.worn) {
+        *gap = profile + worn;
     }
+    step.first_stage(linear, face, state, matrices, ends)?;
+    step.second_stage(linear, face, state, matrices, ends, h)?;
+    step.write_trial(linear, &ends[2]);
+    Ok(())
 }
 
 /// Prescribed acceleration of the clamped face in the block's frame [m/s²].
