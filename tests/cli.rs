@@ -104,6 +104,27 @@ fn the_csv_has_the_outputs_of_the_fmu_and_a_row_per_communication_step() {
 }
 
 #[test]
+fn fields_are_written_at_the_times_asked_for() {
+    let folder = Folder::new("field");
+    folder.write("run.toml", SLIDE);
+    let out = ["simulate", "run.toml", "--out", "run.csv", "--field", "field.csv"];
+    folder.fine(&[&out[..], &["--field-times", "0,1.004e-3"]].concat());
+    let text = std::fs::read_to_string(folder.0.join("field.csv")).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("time,node,x,z,ux,uz"));
+    let rows: Vec<Vec<f64>> =
+        lines.map(|l| l.split(',').map(|c| c.parse().unwrap()).collect()).collect();
+    let nodes = rows.iter().filter(|r| r[0] == 0.0).count();
+    assert!(nodes > 20 && rows.len() == 2 * nodes);
+    assert!(rows[nodes..].iter().all(|r| r[0] == 1e-3), "the row nearest to 1.004 ms");
+    // Clamped: nodes at the top of the mesh (z = height, 10 mm) do not move relative to the clamped face.
+    let clamped = rows.iter().filter(|r| (r[3] - 0.01).abs() < 1e-12);
+    assert!(clamped.clone().count() > 0 && clamped.clone().all(|r| r[4] == 0.0 && r[5] == 0.0));
+    let text = folder.refused(&[&out[..], &["--field-times", "7.0"]].concat());
+    tells(&text, &["--field-times", "7", "0 to 0.002 s"]);
+}
+
+#[test]
 fn json_names_units_and_parameters() {
     let folder = Folder::new("json");
     folder.write("run.toml", SLIDE);

@@ -6,6 +6,7 @@
 
 mod belt;
 mod check;
+mod field;
 mod fmu;
 mod init;
 mod metrics;

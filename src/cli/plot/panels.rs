@@ -101,7 +101,11 @@ fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
 
 fn lines(area: &Area, title: &str, [x_axis, y_axis]: [&str; 2], curves: &[Curve]) -> Drawn {
     let points = || curves.iter().flat_map(|c| c.points.iter());
-    let (xs, ys) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)));
+    let (xs, mut ys) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)));
+    if curves.iter().any(|c| !c.name.is_empty()) {
+        // Room for the legend above the curves.
+        ys.end += 0.2 * (ys.end - ys.start);
+    }
     let mut chart = ChartBuilder::on(area)
         .caption(title, ("sans-serif", 17))
         .margin(14)
@@ -133,6 +137,7 @@ fn lines(area: &Area, title: &str, [x_axis, y_axis]: [&str; 2], curves: &[Curve]
     if curves.iter().any(|c| !c.name.is_empty()) {
         chart
             .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
             .background_style(WHITE.mix(0.85))
             .border_style(BLACK.mix(0.3))
             .label_font(("sans-serif", 13))
