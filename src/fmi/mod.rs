@@ -12,6 +12,8 @@ mod inputs;
 mod instance;
 mod log;
 pub mod model_description;
+#[cfg(feature = "cli")]
+pub mod package;
 pub mod phase;
 mod settings;
 mod state;

@@ -2,7 +2,7 @@
 
 use super::log::Category;
 use super::units::{self, BASE};
-use super::variables::{self, number, Source, Type, Variable};
+use super::variables::{self, number, Source, Variable};
 use super::MODEL_IDENTIFIER;
 use crate::params::table::{DisplayUnit, Item};
 use crate::params::{Kind, ParamSpec};
@@ -261,9 +261,4 @@ fn shapes_equilibrium(name: &str) -> bool {
 /// Text as it may stand in an attribute.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-/// Is the type of this variable one of a number? (For the table of the documentation.)
-pub fn is_number(variable: &Variable) -> bool {
-    matches!(variable.kind(), Type::Real | Type::Integer)
 }
