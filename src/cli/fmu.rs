@@ -180,7 +180,17 @@ fn table(variables: &[Variable]) -> String {
 
 fn csv(variables: &[Variable]) -> Result<String, Fault> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let header = ["name", "reference", "type", "causality", "variability", "unit", "start", "range", "meaning"];
+    let header = [
+        "name",
+        "reference",
+        "type",
+        "causality",
+        "variability",
+        "unit",
+        "start",
+        "range",
+        "meaning",
+    ];
     let failed = |reason: String| Fault::File { path: "standard output".into(), reason };
     writer.write_record(header).map_err(|e| failed(e.to_string()))?;
     for (reference, variable) in variables.iter().enumerate() {

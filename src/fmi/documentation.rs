@@ -110,7 +110,8 @@ pub fn range(variable: &Variable) -> String {
             Kind::Real { min, max, .. } => format!("{min:?} to {max:?}"),
             Kind::Integer { min, max } => format!("{min} to {max}"),
             Kind::Enumeration { items, .. } => {
-                let choices = items.iter().enumerate().map(|(i, x)| format!("{} {}", i + 1, x.name));
+                let choices =
+                    items.iter().enumerate().map(|(i, x)| format!("{} {}", i + 1, x.name));
                 choices.collect::<Vec<_>>().join(", ")
             }
             Kind::Boolean | Kind::Text => String::new(),

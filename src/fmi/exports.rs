@@ -98,8 +98,7 @@ fn report(instance: &mut Instance, call: Call, refusal: &Refusal) -> Status {
 
 /// Text of a C string; `None` for NULL.
 unsafe fn text(pointer: *const c_char) -> Option<String> {
-    (!pointer.is_null())
-        .then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
+    (!pointer.is_null()).then(|| unsafe { CStr::from_ptr(pointer) }.to_string_lossy().into_owned())
 }
 
 fn count(n: usize, null: bool, what: &str) -> Result<(), Refusal> {
@@ -288,9 +287,9 @@ pub unsafe extern "C" fn fmi2SetupExperiment(
     unsafe {
         guarded(c, Call::SetupExperiment, |instance| {
             if toleranceDefined != 0 {
-                instance.log.event(|| {
-                    format!("tolerance {tolerance} is not used, solver.tolerance holds")
-                });
+                instance
+                    .log
+                    .event(|| format!("tolerance {tolerance} is not used, solver.tolerance holds"));
             }
             instance.clock.set_up(startTime, (stopTimeDefined != 0).then_some(stopTime))
         })
@@ -480,9 +479,7 @@ unsafe fn stored<'a>(state: fmi2FMUstate) -> Result<&'a Stored, Refusal> {
 /// Puts the instance where it was when the state was kept.
 #[no_mangle]
 pub unsafe extern "C" fn fmi2SetFMUstate(c: fmi2Component, FMUstate: fmi2FMUstate) -> fmi2Status {
-    unsafe {
-        guarded(c, Call::SetState, |instance| state::restore(instance, stored(FMUstate)?))
-    }
+    unsafe { guarded(c, Call::SetState, |instance| state::restore(instance, stored(FMUstate)?)) }
 }
 
 /// Frees a kept state and sets the pointer to NULL; NULL is ignored.
@@ -595,8 +592,7 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
         guarded(c, Call::SetInputDerivatives, |instance| {
             let orders = read(order, nvr, "orders")?.iter();
             let values = orders.zip(read(value, nvr, "values")?);
-            for (reference, (order, value)) in
-                read(vr, nvr, "value references")?.iter().zip(values)
+            for (reference, (order, value)) in read(vr, nvr, "value references")?.iter().zip(values)
             {
                 instance.set_input_derivative(*reference, *order, *value)?;
             }
@@ -618,8 +614,7 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
         guarded(c, Call::GetOutputDerivatives, |instance| {
             let orders = read(order, nvr, "orders")?;
             let values = write(value, nvr, "values")?.iter_mut().zip(orders);
-            for (reference, (value, order)) in
-                read(vr, nvr, "value references")?.iter().zip(values)
+            for (reference, (value, order)) in read(vr, nvr, "value references")?.iter().zip(values)
             {
                 *value = instance.output_derivative(*reference, *order)?;
             }

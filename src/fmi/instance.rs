@@ -142,11 +142,7 @@ impl Instance {
     /// Builds the block if outputs are asked for in initialization mode.
     fn outputs_ready(&mut self) -> Result<&Outputs, Refusal> {
         if self.phase == Phase::Initialization {
-            return self.model.at_rest(
-                self.settings.params(),
-                self.clock.start,
-                self.inputs.pose,
-            );
+            return self.model.at_rest(self.settings.params(), self.clock.start, self.inputs.pose);
         }
         self.model.outputs().ok_or_else(|| {
             Refusal::error("outputs are not known before fmi2ExitInitializationMode")

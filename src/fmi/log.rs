@@ -67,12 +67,7 @@ pub struct Log {
 impl Log {
     /// A log for the instance `name`.
     pub fn new(functions: &fmi2::fmi2CallbackFunctions, name: CString, events: bool) -> Self {
-        Self {
-            logger: functions.logger,
-            environment: functions.componentEnvironment,
-            name,
-            events,
-        }
+        Self { logger: functions.logger, environment: functions.componentEnvironment, name, events }
     }
 
     /// Switches categories on or off; no category means all. Reasons of failures are always told.

@@ -252,8 +252,14 @@ fn is_zero_at_rest(name: &str) -> bool {
 }
 
 fn shapes_equilibrium(name: &str) -> bool {
-    let bystanders =
-        ["friction.", "wear.", "carriage.", "solver.tolerance", "solver.max_step", "solver.min_step"];
+    let bystanders = [
+        "friction.",
+        "wear.",
+        "carriage.",
+        "solver.tolerance",
+        "solver.max_step",
+        "solver.min_step",
+    ];
     !bystanders.iter().any(|b| name.starts_with(b))
         && !["rubber.density", "rubber.stiffness_damping"].contains(&name)
 }

@@ -9,7 +9,8 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
 
 /// Platforms of FMI 2.0 and how their libraries end.
-pub const PLATFORMS: &[(&str, &str)] = &[("linux64", "so"), ("win64", "dll"), ("darwin64", "dylib")];
+pub const PLATFORMS: &[(&str, &str)] =
+    &[("linux64", "so"), ("win64", "dll"), ("darwin64", "dylib")];
 
 /// A library for one platform.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,7 +53,8 @@ win64: Windows 7 or newer, nothing else.
 ";
 
 fn binary(library: &Library) -> Result<(String, Vec<u8>), Fault> {
-    let Some((platform, ending)) = PLATFORMS.iter().find(|(name, _)| *name == library.platform) else {
+    let Some((platform, ending)) = PLATFORMS.iter().find(|(name, _)| *name == library.platform)
+    else {
         let names: Vec<_> = PLATFORMS.iter().map(|(name, _)| *name).collect();
         return Err(Fault::one(Problem::new(
             "platform",
@@ -88,8 +90,7 @@ fn zipped(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, Fault> {
 /// [`Fault::File`] where it cannot be read as a zip file.
 pub fn problems(path: &Path) -> Result<Vec<Problem>, Fault> {
     let bytes = std::fs::read(path).map_err(|e| fault(path, &e))?;
-    let mut archive =
-        zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| fault(path, &e))?;
+    let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| fault(path, &e))?;
     let names: Vec<String> =
         archive.file_names().filter_map(Result::ok).map(|name| name.into_owned()).collect();
     let mut found = Vec::new();

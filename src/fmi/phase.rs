@@ -147,6 +147,7 @@ pub fn allows(phase: Phase, call: Call) -> bool {
 
 /// Names of the phases in which `call` may be made.
 pub fn where_allowed(call: Call) -> String {
-    let names: Vec<_> = Phase::ALL.into_iter().filter(|p| allows(*p, call)).map(Phase::name).collect();
+    let names: Vec<_> =
+        Phase::ALL.into_iter().filter(|p| allows(*p, call)).map(Phase::name).collect();
     names.join(", ")
 }

@@ -96,8 +96,7 @@ impl Settings {
 fn overlay(path: &Path, params: Params) -> Result<Params, Refusal> {
     let problem = |reason: String| Refusal::error(format!("{}: {reason}", path.display()));
     let text = std::fs::read_to_string(path).map_err(|e| problem(e.to_string()))?;
-    let document: toml::Table =
-        text.parse().map_err(|e| problem(load::syntax(&e).to_string()))?;
+    let document: toml::Table = text.parse().map_err(|e| problem(load::syntax(&e).to_string()))?;
     let (params, problems) = load::from_table(&document, params);
     if problems.is_empty() {
         Ok(params)

@@ -158,7 +158,8 @@ impl Contents {
             }
         };
         let needs_block = !matches!(phase, Phase::Instantiated | Phase::Initialization);
-        let complete = from.0.is_empty() && (block.is_some() || !needs_block || phase == Phase::Error);
+        let complete =
+            from.0.is_empty() && (block.is_some() || !needs_block || phase == Phase::Error);
         complete.then_some(Self {
             phase,
             clock,
