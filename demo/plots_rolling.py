@@ -5,28 +5,26 @@ from style import BLUE, GREY, VERMILION, plt, save
 
 import cases
 
-MAGNIFIED = 5.0  # displacements are drawn so many times larger
 
 
 def instants(run):
     """Times [s] of the four phases, by what the contact does."""
     t = run["time"]
     area, stick = run["contact.area_fraction"], run["contact.stick_fraction"]
-    touching = area > 0.0
-    if not touching.any():
-        quarter = t[-1] / 5.0
-        return {"run-in": quarter, "sticking": 2 * quarter, "sliding": 3 * quarter,
-                "snap-out": 4 * quarter}
-    first, last = np.flatnonzero(touching)[[0, -1]]
-    run_in = first + int(np.argmax(area[first:] > 0.4))
-    flat = np.flatnonzero(area > 0.95)
-    flat = flat if len(flat) else np.flatnonzero(area >= 0.95 * area.max())
-    middle = flat[len(flat) // 2]
-    sticking = flat[0] + int(np.argmax(stick[flat[0]:middle + 1]))
-    sliding = middle + int(np.argmin(stick[middle:flat[-1] + 1]))
-    end = slice(flat[-1], min(last + 50, len(t)))
-    speed = np.maximum(np.abs(run["run_in.velocity.x"][end]), np.abs(run["run_out.velocity.x"][end]))
-    snap_out = flat[-1] + int(np.argmax(speed))
+    touching = np.flatnonzero(area > 0.0)
+    if len(touching) < 10:
+        raise SystemExit("demo: the block never touches the road: check the belt path")
+    first, last = touching[0], touching[-1]
+    middle = (first + last) // 2
+    run_in = first + int(np.argmax(area[first:] > 0.3))
+    late = slice(middle, min(last + 50, len(t)))
+    speed = np.maximum(np.abs(run["run_in.velocity.x"][late]), np.abs(run["run_out.velocity.x"][late]))
+    snap_out = middle + int(np.argmax(speed))
+    # Sliding: halfway between the last instant at which half of the contact sticks and the snap.
+    sticks = np.flatnonzero(stick[:snap_out] > 0.5)
+    sliding = (sticks[-1] + snap_out) // 2 if len(sticks) else middle
+    full = np.flatnonzero((area[:sliding] > 0.95) & (stick[:sliding] > 0.95))
+    sticking = full[len(full) // 2] if len(full) else (run_in + sliding) // 2
     return {"run-in": t[run_in], "sticking": t[sticking], "sliding": t[sliding],
             "snap-out": t[snap_out]}
 
@@ -43,12 +41,13 @@ def draw(run, times, shapes, out):
 
 
 def deformed(run, times, shapes, out):
-    figure, panels = plt.subplots(1, 4, figsize=(13, 4.2), sharey=True, layout="constrained")
+    figure, panels = plt.subplots(1, 4, figsize=(13, 3.7), sharey=True, layout="constrained")
     stations = [n for n in run.dtype.names if n.startswith("contact.pressure")]
-    largest = max(run[n].max() for n in stations) or 1.0
+    rows = {phase: int(np.argmin(np.abs(run["time"] - t))) for phase, t in times.items()}
+    largest = max(run[n][row] for n in stations for row in rows.values()) or 1.0
     pose = cases.rolling_input(cases.ROLLING)
     for panel, (phase, time) in zip(panels, times.items()):
-        row = int(np.argmin(np.abs(run["time"] - time)))
+        row = rows[phase]
         nodes = shapes[np.isclose(shapes["time"], run["time"][row], atol=1e-9)]
         angle = np.interp(time, pose["time"], pose["belt.angle"])
         height = np.interp(time, pose["time"], pose["belt.z"])
@@ -57,26 +56,28 @@ def deformed(run, times, shapes, out):
         panel.set_title(f"{phase}\nt = {1e3 * time:.2f} ms, stick {run['contact.stick_fraction'][row]:.0%}",
                         fontsize=10)
         panel.set_xlabel("along the road [mm]")
+        panel.set_xlim(-10, 10)
+        panel.set_ylim(-5, 12.5)
         panel.set_aspect("equal")
         panel.grid(False)
     panels[0].set_ylabel("above the road [mm]")
-    figure.suptitle(f"One passage through the contact patch: displacements × {MAGNIFIED:.0f}, "
-                    f"contact pressure in orange (longest bar {1e-3 * largest:.0f} kPa)")
+    figure.suptitle("One passage through the contact patch, displacements to scale; "
+                    f"contact pressure in orange (deepest {1e-6 * largest:.2f} N/mm²)")
     return save(figure, out, "rolling-shapes")
 
 
-def placed(nodes, angle, height, magnified):
+def placed(nodes, angle, height, share=1.0):
     """Nodes in the road frame [mm], seen from above the middle of the clamped face."""
-    x = nodes["x"] + magnified * nodes["ux"]
+    x = nodes["x"] + share * nodes["ux"]
     # The block hangs below the clamped face.
-    z = nodes["z"] - cases.BLOCK["block.height"] + magnified * nodes["uz"]
+    z = nodes["z"] - cases.BLOCK["block.height"] + share * nodes["uz"]
     cos, sin = np.cos(angle), np.sin(angle)
     return 1e3 * (cos * x - sin * z), 1e3 * (height + sin * x + cos * z)
 
 
 def grid(panel, nodes, angle, height):
     """Lines of the mesh through corner nodes, deformed; the outline of the undeformed block."""
-    x, z = placed(nodes, angle, height, MAGNIFIED)
+    x, z = placed(nodes, angle, height)
     for key in ("x", "z"):
         for value in np.unique(nodes[key]):
             line = np.flatnonzero(nodes[key] == value)
@@ -94,7 +95,7 @@ def pressure_bars(panel, nodes, angle, height, pressure, largest):
     """Pressure downwards from the road, below where the face stands."""
     face = nodes[nodes["z"] == nodes["z"].min()]
     face = face[np.argsort(face["x"])]
-    x, _ = placed(face, angle, height, MAGNIFIED)
+    x, _ = placed(face, angle, height)
     at = np.interp(np.linspace(0, 1, len(pressure)), np.linspace(0, 1, len(x)), x)
     bars = -4.0 * np.array(pressure) / largest
     panel.fill_between(at, bars, 0.0, color=VERMILION, alpha=0.45, linewidth=0)
@@ -114,13 +115,13 @@ def run_in_edge(run, times, out):
     panels[2].plot(s, run["contact.force.z"], color=VERMILION, label="normal")
     panels[2].set_ylabel("force of the road [N]")
     panels[2].set_xlabel("contact coordinate: belt travel from the middle of the patch [mm]")
-    panels[2].legend(loc="upper right")
+    panels[2].legend(loc="upper left")
     for phase, time in times.items():
         at = np.interp(time, run["time"], s)
         for panel in panels:
             panel.axvline(at, color=GREY, linewidth=0.8, linestyle="--")
-        panels[0].annotate(phase, (at, 1.0), xycoords=("data", "axes fraction"), fontsize=9,
-                           xytext=(3, -4), textcoords="offset points", rotation=90, va="top")
+        panels[2].annotate(phase, (at, 0.0), xycoords=("data", "axes fraction"), fontsize=9,
+                           xytext=(3, 4), textcoords="offset points", rotation=90, va="bottom")
     touching = s[run["contact.area_fraction"] > 0]
     if len(touching):
         panels[2].set_xlim(touching[0] - 8, touching[-1] + 12)

@@ -22,6 +22,10 @@ def displacement(run, out):
         axes.set_ylabel("displacement [µm]")
     end = 1e3 * run["time"][-1]
     late.set_xlim(end - 1e3 * LATE, end)
+    seen = run["time"] > run["time"][-1] - LATE
+    values = 1e6 * run["run_in.displacement.x"][seen]
+    margin = 0.1 * np.ptp(values) + 1.0
+    late.set_ylim(values.min() - margin, values.max() + margin)
     late.set_xlabel("time [ms]")
     late.set_title(f"the last {1e3 * LATE:.0f} ms", fontsize=10)
     whole.set_title("Tangential displacement of the tread face's edges relative to the belt\n"
@@ -43,8 +47,9 @@ def limit_cycle(edge, out):
         axes.plot(1e6 * node["ux"][late], 1e3 * velocity[late], color=color, linewidth=0.9,
                   label=f"{1e3 * z:.1f} mm")
     axes.axhline(1e3 * cases.SLIDING.speed, color="black", linewidth=0.8, linestyle="--")
-    axes.annotate("road speed: the node sticks", (0.01, 1e3 * cases.SLIDING.speed), fontsize=9,
-                  xycoords=("axes fraction", "data"), xytext=(0, 3), textcoords="offset points")
+    axes.annotate("road speed: the node sticks", (0.99, 1e3 * cases.SLIDING.speed), fontsize=9,
+                  xycoords=("axes fraction", "data"), xytext=(0, 3), textcoords="offset points",
+                  ha="right")
     axes.set_xlabel("tangential displacement [µm]")
     axes.set_ylabel("tangential velocity [mm/s]")
     axes.set_title(f"Limit cycles of the nodes up the run-in edge, last {1e3 * LATE:.0f} ms")
@@ -53,7 +58,7 @@ def limit_cycle(edge, out):
 
 
 def forces(run, out):
-    figure, (force, mu) = plt.subplots(2, 1, figsize=(8, 6), sharex=True, layout="constrained")
+    figure, (force, mu) = plt.subplots(2, 1, figsize=(8, 6), layout="constrained")
     t = 1e3 * run["time"]
     force.plot(t, run["contact.force.x"], color=BLUE, label="tangential")
     force.plot(t, run["contact.force.z"], color=VERMILION, label="normal")
@@ -64,7 +69,10 @@ def forces(run, out):
     mu.plot(t, run["contact.friction_coefficient"], color=BLUE, label="friction coefficient")
     mu.plot(t, run["contact.stick_fraction"], color=VERMILION, linewidth=0.8,
             label="share of the contact that sticks")
+    force.set_xlabel("time [ms]")
     mu.set_xlabel("time [ms]")
+    mu.set_xlim(t[-1] - 1e3 * LATE, t[-1])
+    mu.set_title(f"the last {1e3 * LATE:.0f} ms", fontsize=10)
     mu.set_ylabel("friction, share [-]")
     mu.set_ylim(top=1.25 * max(1.0, run["contact.friction_coefficient"].max()))
     mu.legend(loc="upper right", ncols=2)
