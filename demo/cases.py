@@ -58,7 +58,9 @@ def time_grid(case):
 
 
 def structured(columns):
-    array = np.empty(len(columns["time"]), dtype=[(name, float) for name in columns])
+    """An input of fmpy: all four inputs of the FMU, those not used at zero."""
+    names = ["time", "belt.x", "belt.z", "belt.angle", "normal_load"]
+    array = np.zeros(len(columns["time"]), dtype=[(name, float) for name in names])
     for name, values in columns.items():
         array[name] = values
     return array

@@ -15,16 +15,16 @@ def instants(run):
     if len(touching) < 10:
         raise SystemExit("demo: the block never touches the road: check the belt path")
     first, last = touching[0], touching[-1]
-    middle = (first + last) // 2
+    speed = np.maximum(np.abs(run["run_in.velocity.x"]), np.abs(run["run_out.velocity.x"]))
     run_in = first + int(np.argmax(area[first:] > 0.3))
-    late = slice(middle, min(last + 50, len(t)))
-    speed = np.maximum(np.abs(run["run_in.velocity.x"][late]), np.abs(run["run_out.velocity.x"][late]))
-    snap_out = middle + int(np.argmax(speed))
-    # Sliding: halfway between the last instant at which half of the contact sticks and the snap.
-    sticks = np.flatnonzero(stick[:snap_out] > 0.5)
-    sliding = (sticks[-1] + snap_out) // 2 if len(sticks) else middle
-    full = np.flatnonzero((area[:sliding] > 0.95) & (stick[:sliding] > 0.95))
-    sticking = full[len(full) // 2] if len(full) else (run_in + sliding) // 2
+    full = np.flatnonzero(area > 0.9 * area.max())
+    # The first slip of the whole face; without one, the middle of the patch.
+    slips = full[(stick[full] < 0.1) & (full > full[0] + 5)]
+    slip = slips[0] if len(slips) else full[len(full) // 2]
+    holds = np.flatnonzero(stick[run_in:slip] > 0.5)
+    sticking = run_in + (holds[-1] if len(holds) else 0)
+    sliding = slip + int(np.argmax(speed[slip:slip + 40]))
+    snap_out = full[-1] + int(np.argmax(speed[full[-1]:last + 50]))
     return {"run-in": t[run_in], "sticking": t[sticking], "sliding": t[sliding],
             "snap-out": t[snap_out]}
 
@@ -120,8 +120,11 @@ def run_in_edge(run, times, out):
         at = np.interp(time, run["time"], s)
         for panel in panels:
             panel.axvline(at, color=GREY, linewidth=0.8, linestyle="--")
-        panels[2].annotate(phase, (at, 0.0), xycoords=("data", "axes fraction"), fontsize=9,
-                           xytext=(3, 4), textcoords="offset points", rotation=90, va="bottom")
+        before = phase == "sticking"  # sliding follows it at once: its label goes to the other side
+        panels[1].annotate(phase, (at, 0.97), xycoords=("data", "axes fraction"), fontsize=9,
+                           xytext=(-3 if before else 3, 0), textcoords="offset points",
+                           ha="right" if before else "left", va="top",
+                           bbox={"facecolor": "white", "edgecolor": "none", "pad": 1})
     touching = s[run["contact.area_fraction"] > 0]
     if len(touching):
         panels[2].set_xlim(touching[0] - 8, touching[-1] + 12)
