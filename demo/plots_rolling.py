@@ -21,7 +21,7 @@ def instants(run):
     # The first slip of the whole face; without one, the middle of the patch.
     slips = full[(stick[full] < 0.1) & (full > full[0] + 5)]
     slip = slips[0] if len(slips) else full[len(full) // 2]
-    holds = np.flatnonzero(stick[run_in:slip] > 0.5)
+    holds = np.flatnonzero(stick[run_in:slip] > 0.9)
     sticking = run_in + (holds[-1] if len(holds) else 0)
     sliding = slip + int(np.argmax(speed[slip:slip + 40]))
     snap_out = full[-1] + int(np.argmax(speed[full[-1]:last + 50]))
@@ -111,6 +111,8 @@ def run_in_edge(run, times, out):
                         "belt 10 m/s, 3 % braking slip")
     panels[1].plot(s, 1e3 * run["run_in.velocity.x"], color=BLUE)
     panels[1].set_ylabel("velocity [mm/s]")
+    low, high = panels[1].get_ylim()
+    panels[1].set_ylim(low, high + 0.15 * (high - low))  # room for the labels
     panels[2].plot(s, run["contact.force.x"], color=BLUE, label="tangential")
     panels[2].plot(s, run["contact.force.z"], color=VERMILION, label="normal")
     panels[2].set_ylabel("force of the road [N]")

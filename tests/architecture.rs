@@ -7,7 +7,11 @@ use std::path::{Path, PathBuf};
 const MOST_LINES: usize = 400;
 
 /// Files that are longer, with the length that they may have; the aim is to split them.
-const LONGER: &[(&str, usize)] = &[("src/dynamics/stage.rs", 480)];
+const LONGER: &[(&str, usize)] = &[
+    ("src/dynamics/stage.rs", 480),
+    // One function of a few lines per call of the standard: a list, not a plot.
+    ("src/fmi/exports.rs", 760),
+];
 
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
@@ -85,7 +89,7 @@ fn imports(code: &str) -> Vec<String> {
 
 #[test]
 fn every_path_that_the_architecture_names_exists() {
-    let planned = ["src/fmi", "src/study", "src/gap"];
+    let planned = ["src/study", "src/gap"];
     let text = architecture();
     let paths = text.split('`').filter(|word| {
         ["src/", "tests/", "examples/", "demo/"].iter().any(|folder| word.starts_with(folder))
