@@ -43,7 +43,8 @@ fuzz: ## Fuzz the C interface and the file readers, 60 s each (FUZZ_SECONDS=...)
 	@packaging/setup.sh build
 	@packaging/fuzz.sh
 
-docs: ## The Rust documentation, warnings denied
+docs: ## The book (docs/src, HTML where mdbook is installed) and the Rust documentation
+	@docs/build.sh
 	@RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
 
 clean: ## Remove what was built (keeps .venv)

@@ -69,10 +69,7 @@ fn module(path: &Path) -> String {
 fn imports(code: &str) -> Vec<String> {
     let mut found = Vec::new();
     for line in code.lines().map(str::trim) {
-        let Some(rest) = line
-            .trim_start_matches("pub ")
-            .strip_prefix("use crate::")
-        else {
+        let Some(rest) = line.trim_start_matches("pub ").strip_prefix("use crate::") else {
             continue;
         };
         let names = rest.trim_start_matches('{').split(',');

@@ -57,8 +57,7 @@ fn project(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-const SLIDE: &str =
-    "[run]\nduration = 0.002\n[run.slide]\nspeed = 0.3\nmean_pressure = 250e3\n";
+const SLIDE: &str = "[run]\nduration = 0.002\n[run.slide]\nspeed = 0.3\nmean_pressure = 250e3\n";
 
 /// Every part of a message that a user needs: name, value, allowed, way out.
 fn tells(text: &str, parts: &[&str]) {

@@ -27,11 +27,7 @@ fn read(path: &Path) -> String {
 }
 
 fn tread(folder: &Path, arguments: &[&str]) -> std::process::Output {
-    Command::new(env!("CARGO_BIN_EXE_tread"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap()
+    Command::new(env!("CARGO_BIN_EXE_tread")).args(arguments).current_dir(folder).output().unwrap()
 }
 
 /// A folder of this test's own with the reference pages in it.
@@ -56,7 +52,9 @@ fn every_link_of_the_book_and_the_readme_leads_somewhere() {
             if target.is_empty() || target.contains("://") {
                 continue;
             }
-            let made = target.rsplit_once("reference/").map(|(_, page)| pages.join("reference").join(page));
+            let made = target
+                .rsplit_once("reference/")
+                .map(|(_, page)| pages.join("reference").join(page));
             let path = made.unwrap_or_else(|| document.parent().unwrap().join(target));
             if !path.exists() {
                 broken.push(format!("{}: {target}", document.display()));
@@ -71,12 +69,10 @@ fn every_link_of_the_book_and_the_readme_leads_somewhere() {
 fn the_shell_parts_of_the_tutorials_run() {
     for name in ["slide", "roll"] {
         let text = read(&root().join(format!("docs/src/tutorials/{name}.md")));
-        let script: String = text
-            .split("```sh\n")
-            .skip(1)
-            .filter_map(|part| part.split("```").next())
-            .collect();
-        let folder = std::env::temp_dir().join(format!("tread-tutorial-{name}-{}", std::process::id()));
+        let script: String =
+            text.split("```sh\n").skip(1).filter_map(|part| part.split("```").next()).collect();
+        let folder =
+            std::env::temp_dir().join(format!("tread-tutorial-{name}-{}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();
         let binary = Path::new(env!("CARGO_BIN_EXE_tread")).parent().unwrap();
         let path = format!("{}:{}", binary.display(), std::env::var("PATH").unwrap_or_default());

@@ -33,7 +33,8 @@ pub fn run(arguments: &Arguments, command: clap::Command) -> Result<Done, Stop> 
 }
 
 fn command_line(command: clap::Command) -> String {
-    let mut page = String::from("# Command line\n\nWhat `tread --help` and the commands' own help say.\n");
+    let mut page =
+        String::from("# Command line\n\nWhat `tread --help` and the commands' own help say.\n");
     let mut command = command.term_width(92);
     command.build();
     help(&mut command, "", &mut page);

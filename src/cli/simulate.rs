@@ -111,7 +111,7 @@ fn progress(rows: u64, quiet: bool) -> ProgressBar {
 
 /// Where rows go: CSV at once, or columns of JSON at the end.
 enum Sink {
-    Csv { writer: csv::Writer<Box<dyn Write>>, target: String },
+    Csv { writer: Box<csv::Writer<Box<dyn Write>>>, target: String },
     Json { columns: Vec<Vec<f64>>, out: Box<dyn Write>, target: String },
 }
 
@@ -122,7 +122,7 @@ impl Sink {
         if arguments.json {
             return Ok(Self::Json { columns: vec![Vec::new(); columns().len()], out, target });
         }
-        let mut writer = csv::Writer::from_writer(out);
+        let mut writer = Box::new(csv::Writer::from_writer(out));
         writer.write_record(columns()).map_err(|e| failed(&target, e))?;
         Ok(Self::Csv { writer, target })
     }
@@ -159,6 +159,8 @@ impl Sink {
 fn failed(target: &str, error: csv::Error) -> Stop {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => output::write_failed(target, &error),
-        other => Stop::Fault(Fault::File { path: target.to_string(), reason: format!("{other:?}") }),
+        other => {
+            Stop::Fault(Fault::File { path: target.to_string(), reason: format!("{other:?}") })
+        }
     }
 }

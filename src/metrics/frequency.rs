@@ -59,8 +59,7 @@ fn refined(correlation: &[f64], first: f64) -> f64 {
 /// The signal less its mean on a grid of [`GRID`] points.
 fn uniform(time: &[f64], signal: &[f64], step: f64) -> Vec<f64> {
     let spline = Spline::natural(time, signal);
-    let mut grid: Vec<f64> =
-        (0..GRID).map(|i| spline.at(time[0] + i as f64 * step).0).collect();
+    let mut grid: Vec<f64> = (0..GRID).map(|i| spline.at(time[0] + i as f64 * step).0).collect();
     let mean = grid.iter().sum::<f64>() / GRID as f64;
     grid.iter_mut().for_each(|x| *x -= mean);
     grid

@@ -292,7 +292,8 @@ impl Reader {
                 .map(|pressure| pressure * area),
         };
         let (speed, load) = (speed?, load?);
-        let (start_ramp, dwell) = (self.or_default("slide.start_ramp"), self.or_default("slide.dwell"));
+        let (start_ramp, dwell) =
+            (self.or_default("slide.start_ramp"), self.or_default("slide.dwell"));
         let speed_end = self.given("slide.speed_end").unwrap_or(speed);
         let run = self.given("duration").unwrap_or(0.0) - dwell;
         let sweep = if speed_end == speed { 0.0 } else { run };

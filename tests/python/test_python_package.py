@@ -1,5 +1,7 @@
 """The Python package against the FMU; skipped where the FMU is not built."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +13,7 @@ pytest.importorskip("pandas")
 if not FMU.exists():
     pytest.skip("out/TreadBlock.fmu is not built", allow_module_level=True)
 
+sys.path.insert(0, str(ROOT / "python"))
 from tread_block import TreadBlock, TreadBlockError  # noqa: E402
 
 
@@ -54,3 +57,11 @@ def test_wrong_names_and_values_are_told_at_once():
         TreadBlock({"rubber.poisson_ratio": 0.6}, fmu=FMU).slide(speed=0.1, load=10.0)
     with pytest.raises(TreadBlockError, match="exactly one"):
         TreadBlock(fmu=FMU).slide(speed=0.1)
+
+
+def test_pip_installs_the_package_with_its_types(tmp_path):
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target",
+               str(tmp_path), str(ROOT / "python")]
+    run = subprocess.run(command, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert (tmp_path / "tread_block/py.typed").exists()
