@@ -31,9 +31,9 @@ fn a_sine_a_sawtooth_and_a_snap_of_known_period_are_met_to_a_thousandth() {
     for dt in [40e-6, 20e-6, 5e-6] {
         let n = (0.02 / dt) as usize;
         let signals: [(&str, Signal); 3] = [
-            ("sine", Box::new(|t| (std::f64::consts::TAU * known * t).sin())),
-            ("sawtooth", Box::new(|t| sawtooth(t, known))),
-            ("snap", Box::new(|t| stick_and_snap(t, known))),
+            ("sine", Box::new(move |t| (std::f64::consts::TAU * known * t).sin())),
+            ("sawtooth", Box::new(move |t| sawtooth(t, known))),
+            ("snap", Box::new(move |t| stick_and_snap(t, known))),
         ];
         for (name, signal) in signals {
             let (time, values) = sampled(n, dt, signal);
