@@ -7,4 +7,9 @@ libraries=()
 for file in out/binaries/*/TreadBlock.*; do
     libraries+=(--library "$(basename "$(dirname "$file")")=$file")
 done
-cargo run --quiet --release --bin tread -- fmu build --out out/TreadBlock.fmu "${libraries[@]}"
+# A `tread` that is already there may pack (TREAD=...), as long as it is of this very source.
+if [ -x "${TREAD:-}" ]; then
+    "$TREAD" fmu build --out out/TreadBlock.fmu "${libraries[@]}"
+else
+    cargo run --quiet --release --bin tread -- fmu build --out out/TreadBlock.fmu "${libraries[@]}"
+fi

@@ -52,7 +52,7 @@ fn contained<T>(body: impl FnOnce() -> T) -> Result<T, String> {
 }
 
 /// The one way into an instance: checks that the call is allowed, runs it, reports its failure.
-unsafe fn guarded(
+pub(super) unsafe fn guarded(
     component: fmi2Component,
     call: Call,
     body: impl FnOnce(&mut Instance) -> Result<(), Refusal>,

@@ -12,6 +12,8 @@ mod inputs;
 mod instance;
 mod log;
 pub mod model_description;
+#[allow(unsafe_code)]
+pub mod model_exchange;
 #[cfg(feature = "cli")]
 pub mod package;
 pub mod phase;

@@ -101,6 +101,8 @@ pub enum Call {
     CancelStep,
     /// `fmi2GetStatus` and its kin
     GetStatus,
+    /// The functions of model exchange, which this FMU does not offer
+    ModelExchange,
 }
 
 const X: bool = true;
@@ -138,6 +140,7 @@ pub const ALLOWED: &[(Call, [bool; 9])] = &[
     (Call::DoStep,                    [O, O, X, O, O, O, O, O, O]),
     (Call::CancelStep,                [O, O, O, X, O, O, O, O, O]),
     (Call::GetStatus,                 [O, O, X, X, X, O, X, O, O]),
+    (Call::ModelExchange,             [O, O, O, O, O, O, O, O, O]),
 ];
 
 /// May `call` be made in `phase`?
@@ -149,5 +152,9 @@ pub fn allows(phase: Phase, call: Call) -> bool {
 pub fn where_allowed(call: Call) -> String {
     let names: Vec<_> =
         Phase::ALL.into_iter().filter(|p| allows(*p, call)).map(Phase::name).collect();
-    names.join(", ")
+    if names.is_empty() {
+        "no state, this FMU offers co-simulation only".into()
+    } else {
+        names.join(", ")
+    }
 }
