@@ -13,6 +13,7 @@ use tread_block::fmi::phase::{allows, Call, Phase, ALLOWED};
 fn in_phase(phase: Phase) -> Option<Fmu> {
     let fmu = Fmu::new();
     let c = fmu.c;
+    fmu.coarse();
     unsafe {
         match phase {
             Phase::Instantiated => {}
@@ -62,7 +63,7 @@ fn make(call: Call, fmu: &Fmu, state: fmi2FMUstate) -> u32 {
             Call::GetStatus => {
                 fmi2GetRealStatus(c, fmi2StatusKind_fmi2LastSuccessfulTime, &mut real)
             }
-            Call::ModelExchange => tread_block::fmi::model_exchange::fmi2EnterEventMode(c),
+            Call::ModelExchange => fmi2EnterEventMode(c),
             Call::FreeInstance | Call::GetDirectionalDerivative => OK,
         }
     }

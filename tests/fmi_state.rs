@@ -43,7 +43,7 @@ fn resume(fmu: &Fmu, bytes: &[i8]) -> u32 {
 #[test]
 fn the_fmu_gives_the_bits_of_the_library() {
     let mut params = Params::default();
-    (params.solver.elements_along, params.solver.elements_up) = (6, 4);
+    (params.solver.elements_along, params.solver.elements_up) = (3, 2);
     let mut block = TreadBlock::new(&params).unwrap();
     block.initialize(0.0, Pose { load: 56.25, ..Pose::default() }).unwrap();
     let mut predictor = Predictor::default();

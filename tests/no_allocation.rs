@@ -66,7 +66,7 @@ fn do_step_and_its_setters_and_getters_allocate_nothing() {
 #[test]
 fn the_library_advances_without_allocation() {
     let mut params = Params::default();
-    (params.solver.elements_along, params.solver.elements_up) = (6, 4);
+    (params.solver.elements_along, params.solver.elements_up) = (3, 2);
     let mut block = TreadBlock::new(&params).unwrap();
     block.initialize(0.0, Pose { load: 56.25, ..Pose::default() }).unwrap();
     let mut predictor = Predictor::default();

@@ -12,8 +12,6 @@ mod inputs;
 mod instance;
 mod log;
 pub mod model_description;
-#[allow(unsafe_code)]
-pub mod model_exchange;
 #[cfg(feature = "cli")]
 pub mod package;
 pub mod phase;

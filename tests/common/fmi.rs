@@ -31,18 +31,25 @@ unsafe extern "C" fn logger(
     }
 }
 
+type Plain = unsafe extern "C" fn(
+    *mut c_void,
+    *const c_char,
+    u32,
+    *const c_char,
+    *const c_char,
+    *const c_char,
+);
+type Variadic =
+    unsafe extern "C" fn(*mut c_void, *const c_char, u32, *const c_char, *const c_char, ...);
+
+fn as_variadic(plain: Plain) -> Variadic {
+    unsafe { std::mem::transmute::<Plain, Variadic>(plain) }
+}
+
 /// Callbacks that write to `messages`.
 pub fn callbacks(messages: &Messages) -> fmi2CallbackFunctions {
-    type Plain = unsafe extern "C" fn(
-        *mut c_void,
-        *const c_char,
-        u32,
-        *const c_char,
-        *const c_char,
-        *const c_char,
-    );
     fmi2CallbackFunctions {
-        logger: Some(unsafe { std::mem::transmute::<Plain, _>(logger as Plain) }),
+        logger: Some(as_variadic(logger)),
         allocateMemory: None,
         freeMemory: None,
         stepFinished: None,
@@ -101,12 +108,17 @@ impl Fmu {
 
     /// Coarse mesh, 56.25 N (0.25 N/mm²), initialized at t = 0.
     pub fn initialize(&self) {
-        assert_eq!(self.set_integer("solver.elements_along", 6), OK);
-        assert_eq!(self.set_integer("solver.elements_up", 4), OK);
+        self.coarse();
         assert_eq!(self.set("normal_load", 56.25), OK);
         self.call(|c| unsafe { fmi2SetupExperiment(c, 0, 0.0, 0.0, 0, 0.0) });
         self.call(|c| unsafe { fmi2EnterInitializationMode(c) });
         self.call(|c| unsafe { fmi2ExitInitializationMode(c) });
+    }
+
+    /// A mesh that is built quickly.
+    pub fn coarse(&self) {
+        assert_eq!(self.set_integer("solver.elements_along", 3), OK);
+        assert_eq!(self.set_integer("solver.elements_up", 2), OK);
     }
 
     /// A call that must succeed.

@@ -1,10 +1,32 @@
-//! The functions of model exchange: some importers look all of them up before they ask for any. Each
-//! answers fmi2Error and says that this FMU offers co-simulation only.
-#![allow(non_snake_case, clippy::missing_safety_doc)]
+//! Functions that this FMU does not offer. Some importers look all of them up before they ask for any,
+//! so they are there: each answers fmi2Error and says why.
+#![allow(non_snake_case, clippy::missing_safety_doc, clippy::too_many_arguments)]
 
-use super::exports::guarded;
-use super::phase::Call;
+use super::super::phase::Call;
+use super::super::Refusal;
+use super::guard::guarded;
 use fmi_sys::fmi2::*;
+
+/// Not offered: the description does not announce it.
+#[no_mangle]
+pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
+    c: fmi2Component,
+    _vUnknown_ref: *const fmi2ValueReference,
+    _nUnknown: usize,
+    _vKnown_ref: *const fmi2ValueReference,
+    _nKnown: usize,
+    _dvKnown: *const fmi2Real,
+    _dvUnknown: *mut fmi2Real,
+) -> fmi2Status {
+    unsafe {
+        guarded(c, Call::GetDirectionalDerivative, |_| {
+            Err(Refusal::error(
+                "directional derivatives are not offered (providesDirectionalDerivative is absent); \
+                 use differences between runs from one FMU state",
+            ))
+        })
+    }
+}
 
 unsafe fn not_offered(c: fmi2Component) -> fmi2Status {
     unsafe { guarded(c, Call::ModelExchange, |_| Ok(())) }
