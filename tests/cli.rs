@@ -218,6 +218,19 @@ fn the_shipped_examples_are_good() {
 }
 
 #[test]
+fn several_results_make_a_waterfall() {
+    let folder = Folder::new("waterfall");
+    folder.write("run.toml", SLIDE);
+    for speed in ["0.1", "0.2"] {
+        let set = format!("run.slide.speed={speed}");
+        folder.fine(&["simulate", "run.toml", "--set", &set, "--out", &format!("v{speed}.csv")]);
+    }
+    folder.fine(&["plot", "v0.1.csv", "v0.2.csv", "--out", "all.svg"]);
+    let svg = std::fs::read_to_string(folder.0.join("all.svg")).unwrap();
+    assert!(svg.contains("v0.1") && svg.contains("v0.2") && !svg.contains("NaN"));
+}
+
+#[test]
 fn metrics_of_a_file_are_those_of_its_signal() {
     // Closed form: a sine of 1 kHz, 100 µm peak to peak, on a friction of 0.8.
     let folder = Folder::new("metrics");

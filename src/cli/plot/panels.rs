@@ -10,13 +10,13 @@ use crate::metrics;
 use crate::scenario::Spline;
 
 /// Two colours that also colour-blind people tell apart (Okabe and Ito's blue and vermilion).
-const BLUE_LINE: RGBColor = RGBColor(0, 114, 178);
+pub(super) const BLUE_LINE: RGBColor = RGBColor(0, 114, 178);
 const RED_LINE: RGBColor = RGBColor(213, 94, 0);
 const SIZE: (u32, u32) = (1100, 1240);
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), String>;
-type Points = Vec<(f64, f64)>;
+pub(super) type Points = Vec<(f64, f64)>;
 
 /// A curve with its name and colour.
 struct Curve<'a> {
@@ -77,7 +77,7 @@ fn panels(root: &Area, run: &Run) -> Drawn {
 }
 
 /// Amplitudes and third octaves (as steps) of the settled velocity in kHz and mm/s.
-fn spectra(run: &Run, from: usize) -> (Points, Points) {
+pub(super) fn spectra(run: &Run, from: usize) -> (Points, Points) {
     let time = &run.time[from..];
     let n = time.len();
     let step = (time[n - 1] - time[0]) / (n - 1) as f64;
