@@ -15,6 +15,8 @@ pub mod model_description;
 #[cfg(feature = "cli")]
 pub mod package;
 pub mod phase;
+#[cfg(feature = "cli")]
+pub mod reference;
 mod settings;
 mod state;
 mod stepping;

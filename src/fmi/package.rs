@@ -1,6 +1,6 @@
 //! Packs the FMU: a zip file whose bytes depend on nothing but what goes in.
 
-use super::{documentation, model_description, settings, MODEL_IDENTIFIER};
+use super::{documentation, model_description, reference, settings, MODEL_IDENTIFIER};
 use crate::error::{Fault, Problem};
 use crate::params::{load, Params};
 use std::io::{Cursor, Write};
@@ -37,6 +37,9 @@ pub fn pack(libraries: &[Library]) -> Result<Vec<u8>, Fault> {
     text("documentation/index.html", &documentation::html());
     text("documentation/licenses/license.txt", LICENSE);
     text("documentation/externalDependencies.txt", DEPENDENCIES);
+    let (inputs, outputs) = reference::run()?;
+    text("extra/org.tread-block.reference/inputs.csv", &inputs);
+    text("extra/org.tread-block.reference/outputs.csv", &outputs);
     let parameters = load::to_toml(&Params::default());
     text(&format!("resources/{}", settings::RESOURCE_FILE), &parameters);
     zipped(&files)

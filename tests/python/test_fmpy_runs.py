@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 import threading
+import zipfile
 
 import fmpy
 import numpy as np
@@ -114,3 +115,29 @@ assert state() == before
                           env={**os.environ, "PYTHONWARNINGS": "ignore"})
     assert done.returncode == 0, done.stderr
     assert done.stdout == "" and done.stderr == ""
+
+
+def test_the_reference_result_in_the_fmu_is_what_the_fmu_gives(fmu, slave, outputs):
+    archive = zipfile.ZipFile(fmu)
+
+    def table(name):
+        lines = archive.read(f"extra/org.tread-block.reference/{name}.csv").decode().splitlines()
+        return lines[0].split(","), np.array([[float(x) for x in line.split(",")] for line in lines[1:]])
+
+    names, samples = table("inputs")
+    header, expected = table("outputs")
+    assert header[1:] == outputs
+    one = slave()
+    for name, value in zip(names[1:], samples[0, 1:]):
+        one.set(name, value)
+    one.fmu.setupExperiment(startTime=0.0)
+    one.fmu.enterInitializationMode()
+    one.fmu.exitInitializationMode()
+    rows = [one.outputs()]
+    for k, sample in enumerate(samples[:-1], start=1):
+        for name, value in zip(names[1:], sample[1:]):
+            one.set(name, value)
+        one.fmu.doStep(sample[0], 1e-5)
+        if k % 10 == 0:
+            rows.append(one.outputs())
+    assert_same(rows, expected[:, 1:])
