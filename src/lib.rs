@@ -18,6 +18,7 @@ pub mod contact;
 pub mod drive;
 pub mod dynamics;
 pub mod block;
+pub mod fmi;
 #[cfg(feature = "cli")]
 pub mod columns;
 pub mod scenario;

@@ -57,8 +57,7 @@ fn project(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-const SLIDE: &str =
-    "[run]\nduration = 0.002\n[run.slide]\nspeed = 0.3\nmean_pressure = 250e3\n";
+const SLIDE: &str = "[run]\nduration = 0.002\n[run.slide]\nspeed = 0.3\nmean_pressure = 250e3\n";
 
 /// Every part of a message that a user needs: name, value, allowed, way out.
 fn tells(text: &str, parts: &[&str]) {
@@ -101,6 +100,27 @@ fn the_csv_has_the_outputs_of_the_fmu_and_a_row_per_communication_step() {
         lines.map(|line| line.split(',').next().unwrap().parse().unwrap()).collect();
     assert_eq!(times.len(), 21);
     assert!(times.iter().enumerate().all(|(i, t)| (t - 1e-4 * i as f64).abs() < 1e-12));
+}
+
+#[test]
+fn fields_are_written_at_the_times_asked_for() {
+    let folder = Folder::new("field");
+    folder.write("run.toml", SLIDE);
+    let out = ["simulate", "run.toml", "--out", "run.csv", "--field", "field.csv"];
+    folder.fine(&[&out[..], &["--field-times", "0,1.004e-3"]].concat());
+    let text = std::fs::read_to_string(folder.0.join("field.csv")).unwrap();
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("time,node,x,z,ux,uz"));
+    let rows: Vec<Vec<f64>> =
+        lines.map(|l| l.split(',').map(|c| c.parse().unwrap()).collect()).collect();
+    let nodes = rows.iter().filter(|r| r[0] == 0.0).count();
+    assert!(nodes > 20 && rows.len() == 2 * nodes);
+    assert!(rows[nodes..].iter().all(|r| r[0] == 1e-3), "the row nearest to 1.004 ms");
+    // Clamped: nodes at the top of the mesh (z = height, 10 mm) do not move relative to the clamped face.
+    let clamped = rows.iter().filter(|r| (r[3] - 0.01).abs() < 1e-12);
+    assert!(clamped.clone().count() > 0 && clamped.clone().all(|r| r[4] == 0.0 && r[5] == 0.0));
+    let text = folder.refused(&[&out[..], &["--field-times", "7.0"]].concat());
+    tells(&text, &["--field-times", "7", "0 to 0.002 s"]);
 }
 
 #[test]
@@ -195,6 +215,19 @@ fn the_shipped_examples_are_good() {
         let out = ["--set", "run.duration=5e-4", "--out", "run.csv"];
         folder.fine(&[&["simulate", file.to_str().unwrap()], &out[..]].concat());
     }
+}
+
+#[test]
+fn several_results_make_a_waterfall() {
+    let folder = Folder::new("waterfall");
+    folder.write("run.toml", SLIDE);
+    for speed in ["0.1", "0.2"] {
+        let set = format!("run.slide.speed={speed}");
+        folder.fine(&["simulate", "run.toml", "--set", &set, "--out", &format!("v{speed}.csv")]);
+    }
+    folder.fine(&["plot", "v0.1.csv", "v0.2.csv", "--out", "all.svg"]);
+    let svg = std::fs::read_to_string(folder.0.join("all.svg")).unwrap();
+    assert!(svg.contains("v0.1") && svg.contains("v0.2") && !svg.contains("NaN"));
 }
 
 #[test]

@@ -35,7 +35,7 @@ pub struct Arguments {
     #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
     block_height: f64,
     /// How much lower than the block's height the flat belt runs [m]
-    #[arg(long, default_value_t = 0.3e-3, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.2e-3, allow_negative_numbers = true)]
     compression: f64,
     /// Length of belt over which the curvature goes from the circle's to zero [m]
     #[arg(long, default_value_t = 0.02, allow_negative_numbers = true)]

@@ -31,8 +31,7 @@ const NAMES: [&str; 5] = [
 
 /// Prints the metrics.
 pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
-    let columns =
-        columns::read(&arguments.result, &NAMES, "`tread simulate` writes such a file")?;
+    let columns = columns::read(&arguments.result, &NAMES, "`tread simulate` writes such a file")?;
     let trace = Trace {
         time: &columns[0],
         displacement: &columns[1],
@@ -41,8 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
         stick: &columns[4],
     };
     let summary = summary::of_sliding(&trace, arguments.speed);
-    let text =
-        if arguments.json { format!("{}\n", summary.json()) } else { summary.text() };
+    let text = if arguments.json { format!("{}\n", summary.json()) } else { summary.text() };
     output::to_stdout(text.as_bytes())?;
     Ok(Done::Fine)
 }

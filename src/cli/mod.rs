@@ -6,11 +6,13 @@
 
 mod belt;
 mod check;
+mod field;
 mod fmu;
 mod init;
 mod metrics;
 mod output;
 mod plot;
+mod reference;
 mod simulate;
 mod summary;
 
@@ -61,6 +63,8 @@ enum Command {
     Metrics(metrics::Arguments),
     /// Build, describe or check the FMU
     Fmu(fmu::Arguments),
+    /// Write the book's reference pages: command line, parameters, run files, signals
+    Reference(reference::Arguments),
     /// Write a completion script for a shell
     Completions {
         /// The shell
@@ -78,6 +82,7 @@ pub fn main() -> ExitCode {
         Command::Plot(arguments) => plot::run(&arguments),
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Fmu(arguments) => fmu::run(&arguments),
+        Command::Reference(arguments) => reference::run(&arguments, Arguments::command()),
         Command::Completions { shell } => completions(shell),
     };
     output::exit_code(result)

@@ -78,9 +78,7 @@ pub fn target(path: Option<&Path>) -> String {
 /// Writes data to the standard output.
 pub fn to_stdout(bytes: &[u8]) -> Result<(), Stop> {
     let mut out = io::stdout().lock();
-    out.write_all(bytes)
-        .and_then(|()| out.flush())
-        .map_err(|e| write_failed("standard output", &e))
+    out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| write_failed("standard output", &e))
 }
 
 /// Writes data to a file if one is named, or else to the standard output.

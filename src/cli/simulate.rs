@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::output::{self, Done, Stop};
-use super::summary;
+use super::{field, summary};
 use crate::block::{Outputs, TreadBlock, OUTPUTS};
 use crate::error::Fault;
 use crate::metrics::Recorder;
@@ -36,6 +36,8 @@ pub struct Arguments {
     /// Write JSON (columns, units, parameters, metrics) instead of CSV
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    field: field::Arguments,
     /// No table and no progress on the standard error
     #[arg(long, short)]
     quiet: bool,
@@ -46,13 +48,17 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     let config = config::read(&arguments.config, &arguments.set)?;
     let mut block = TreadBlock::new(&config.params)?;
     let mut sink = Sink::open(arguments)?;
+    let start = config.scenario.start();
+    let span = (start, start + config.plan.duration);
+    let mut field = field::Sink::open(&arguments.field, config.plan.step, span)?;
     let progress = progress(config.plan.rows() as u64, arguments.quiet);
     let mut recorder = Recorder::default();
     let mut stopped = None;
     let result = scenario::run(&mut block, &config.scenario, &config.plan, |time, block| {
         recorder.push(time, block.outputs());
         progress.inc(1);
-        sink.row(time, block.outputs()).map_err(|stop| {
+        let written = sink.row(time, block.outputs()).and_then(|()| field.row(time, block));
+        written.map_err(|stop| {
             stopped = Some(stop);
             // Only ends the run: `stopped` says why.
             Fault::File { path: String::new(), reason: String::new() }
@@ -65,6 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     // Rows up to a fault are worth having: they show what led to it.
     let summary = summary::of(&config, &recorder);
     sink.close(&config, &summary)?;
+    field.close()?;
     result?;
     if !arguments.quiet {
         eprint!("{}", summary.text());
@@ -104,7 +111,7 @@ fn progress(rows: u64, quiet: bool) -> ProgressBar {
 
 /// Where rows go: CSV at once, or columns of JSON at the end.
 enum Sink {
-    Csv { writer: csv::Writer<Box<dyn Write>>, target: String },
+    Csv { writer: Box<csv::Writer<Box<dyn Write>>>, target: String },
     Json { columns: Vec<Vec<f64>>, out: Box<dyn Write>, target: String },
 }
 
@@ -115,7 +122,7 @@ impl Sink {
         if arguments.json {
             return Ok(Self::Json { columns: vec![Vec::new(); columns().len()], out, target });
         }
-        let mut writer = csv::Writer::from_writer(out);
+        let mut writer = Box::new(csv::Writer::from_writer(out));
         writer.write_record(columns()).map_err(|e| failed(&target, e))?;
         Ok(Self::Csv { writer, target })
     }
@@ -152,6 +159,8 @@ impl Sink {
 fn failed(target: &str, error: csv::Error) -> Stop {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => output::write_failed(target, &error),
-        other => Stop::Fault(Fault::File { path: target.to_string(), reason: format!("{other:?}") }),
+        other => {
+            Stop::Fault(Fault::File { path: target.to_string(), reason: format!("{other:?}") })
+        }
     }
 }

@@ -27,7 +27,11 @@ pub fn of(config: &Config, recorder: &Recorder) -> Summary {
     let lines = match &config.scenario {
         Scenario::Slide(slide) => return of_sliding(&trace, slide.speed),
         Scenario::Roll(_) => vec![
-            line("displacement, peak to peak", "um", 1e6 * metrics::peak_to_peak(trace.displacement)),
+            line(
+                "displacement, peak to peak",
+                "um",
+                1e6 * metrics::peak_to_peak(trace.displacement),
+            ),
             line("velocity, peak to peak", "mm/s", 1e3 * metrics::peak_to_peak(trace.velocity)),
             line("largest friction", "1", trace.friction.iter().fold(0.0, |a, f| f.abs().max(a))),
         ],

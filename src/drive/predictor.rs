@@ -92,6 +92,30 @@ impl Predictor {
         Segment { x, z, angle, load }
     }
 
+    /// The histories of all signals as plain numbers, [`Self::SAVED`] of them.
+    pub fn save(&self, state: &mut Vec<f64>) {
+        for Signal { past: [(t1, x1), (t2, x2)], known, end: (x, v) } in self.signals {
+            state.extend([t1, x1, t2, x2, known as f64, x, v]);
+        }
+    }
+
+    /// How many numbers [`Self::save`] appends.
+    pub const SAVED: usize = 28;
+
+    /// Restores what [`Self::save`] wrote; `None` if the count does not fit.
+    pub fn restore(state: &[f64]) -> Option<Self> {
+        let mut restored = Self::default();
+        let (chunks, []) = state.as_chunks::<7>() else { return None };
+        if chunks.len() != restored.signals.len() {
+            return None;
+        }
+        for (signal, [t1, x1, t2, x2, known, x, v]) in restored.signals.iter_mut().zip(chunks) {
+            let known = (known.clamp(0.0, 2.0)) as usize;
+            *signal = Signal { past: [(*t1, *x1), (*t2, *x2)], known, end: (*x, *v) };
+        }
+        Some(restored)
+    }
+
     /// Values as the master sets them without derivatives.
     pub fn known(pose: Pose) -> [Known; 4] {
         [pose.x, pose.z, pose.angle, pose.load].map(Known::value)

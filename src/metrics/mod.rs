@@ -110,9 +110,8 @@ pub fn stick_slip(trace: &Trace, speed: f64) -> StickSlip {
 
 /// Largest minus smallest value.
 pub fn peak_to_peak(values: &[f64]) -> f64 {
-    let (low, high) = values
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) =
+        values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(*v), h.max(*v)));
     (high - low).max(0.0)
 }
 

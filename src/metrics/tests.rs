@@ -1,5 +1,7 @@
 use super::*;
 
+type Signal = Box<dyn Fn(f64) -> f64>;
+
 /// `n` samples every `dt` of a function of time.
 fn sampled(n: usize, dt: f64, f: impl Fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
     let time: Vec<f64> = (0..n).map(|i| i as f64 * dt).collect();
@@ -28,10 +30,10 @@ fn a_sine_a_sawtooth_and_a_snap_of_known_period_are_met_to_a_thousandth() {
     let known = 1783.7;
     for dt in [40e-6, 20e-6, 5e-6] {
         let n = (0.02 / dt) as usize;
-        let signals: [(&str, Box<dyn Fn(f64) -> f64>); 3] = [
-            ("sine", Box::new(|t| (std::f64::consts::TAU * known * t).sin())),
-            ("sawtooth", Box::new(|t| sawtooth(t, known))),
-            ("snap", Box::new(|t| stick_and_snap(t, known))),
+        let signals: [(&str, Signal); 3] = [
+            ("sine", Box::new(move |t| (std::f64::consts::TAU * known * t).sin())),
+            ("sawtooth", Box::new(move |t| sawtooth(t, known))),
+            ("snap", Box::new(move |t| stick_and_snap(t, known))),
         ];
         for (name, signal) in signals {
             let (time, values) = sampled(n, dt, signal);
@@ -47,7 +49,7 @@ fn alternating_cycles_are_still_one_cycle_each() {
     // Every other snap 10 % weaker: the ear and the paper call this the snap rate.
     let f = 1000.0;
     let (time, values) = sampled(4000, 5e-6, |t| {
-        let weaker = if (t * f) as usize % 2 == 0 { 1.0 } else { 0.9 };
+        let weaker = if ((t * f) as usize).is_multiple_of(2) { 1.0 } else { 0.9 };
         weaker * stick_and_snap(t, f)
     });
     let found = frequency(&time, &values).unwrap().frequency;
@@ -90,9 +92,8 @@ fn means_are_taken_over_whole_periods() {
 
 #[test]
 fn a_growing_vibration_counts_from_where_it_is_grown() {
-    let (_, velocity) = sampled(2400, 10e-6, |t| {
-        (t / 8e-3).min(1.0) * (std::f64::consts::TAU * 1500.0 * t).sin()
-    });
+    let (_, velocity) =
+        sampled(2400, 10e-6, |t| (t / 8e-3).min(1.0) * (std::f64::consts::TAU * 1500.0 * t).sin());
     let from = settled_from(&velocity);
     assert!((600..=1000).contains(&from), "settled from sample {from}");
 }

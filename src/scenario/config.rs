@@ -38,7 +38,7 @@ pub const KEYS: &[Key] = &[
     Key { name: "roll.contact_length", unit: "m", min: 0.01, max: 0.5, default: Some(0.12), doc: "Length of the flattened belt" },
     Key { name: "roll.belt_speed", unit: "m/s", min: 0.1, max: 150.0, default: None, doc: "Speed of the belt relative to the axle; this or roll.belt_file is needed" },
     Key { name: "roll.slip", unit: "1", min: -1.0, max: 1.0, default: Some(0.0), doc: "Sliding of the flat belt over its speed; positive brakes, negative drives" },
-    Key { name: "roll.compression", unit: "m", min: 0.0, max: 0.05, default: Some(0.3e-3), doc: "How much lower than the undeformed block's height the flat belt runs" },
+    Key { name: "roll.compression", unit: "m", min: 0.0, max: 0.05, default: Some(0.2e-3), doc: "How much lower than the undeformed block's height the flat belt runs" },
     Key { name: "roll.blend_length", unit: "m", min: 1e-4, max: 0.5, default: Some(0.02), doc: "Length of belt over which the curvature goes from the circle's to zero" },
     Key { name: "roll.lead", unit: "m", min: 1e-4, max: 1.0, default: Some(0.05), doc: "Length of belt before and behind the flat part" },
 ];
@@ -292,7 +292,8 @@ impl Reader {
                 .map(|pressure| pressure * area),
         };
         let (speed, load) = (speed?, load?);
-        let (start_ramp, dwell) = (self.or_default("slide.start_ramp"), self.or_default("slide.dwell"));
+        let (start_ramp, dwell) =
+            (self.or_default("slide.start_ramp"), self.or_default("slide.dwell"));
         let speed_end = self.given("slide.speed_end").unwrap_or(speed);
         let run = self.given("duration").unwrap_or(0.0) - dwell;
         let sweep = if speed_end == speed { 0.0 } else { run };

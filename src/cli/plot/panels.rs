@@ -10,18 +10,19 @@ use crate::metrics;
 use crate::scenario::Spline;
 
 /// Two colours that also colour-blind people tell apart (Okabe and Ito's blue and vermilion).
-const BLUE_LINE: RGBColor = RGBColor(0, 114, 178);
+pub(super) const BLUE_LINE: RGBColor = RGBColor(0, 114, 178);
 const RED_LINE: RGBColor = RGBColor(213, 94, 0);
 const SIZE: (u32, u32) = (1100, 1240);
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Drawn = Result<(), String>;
+pub(super) type Points = Vec<(f64, f64)>;
 
 /// A curve with its name and colour.
 struct Curve<'a> {
     name: &'a str,
     color: RGBColor,
-    points: Vec<(f64, f64)>,
+    points: Points,
 }
 
 /// All panels as one SVG.
@@ -39,7 +40,7 @@ pub fn draw(run: &Run) -> Result<String, Fault> {
 fn panels(root: &Area, run: &Run) -> Drawn {
     root.fill(&WHITE).map_err(|e| e.to_string())?;
     let areas = root.split_evenly((3, 2));
-    let over_time = |values: &[f64], factor: f64| -> Vec<(f64, f64)> {
+    let over_time = |values: &[f64], factor: f64| -> Points {
         run.time.iter().zip(values).map(|(t, v)| (1e3 * t, factor * v)).collect()
     };
     let edges = [
@@ -76,7 +77,7 @@ fn panels(root: &Area, run: &Run) -> Drawn {
 }
 
 /// Amplitudes and third octaves (as steps) of the settled velocity in kHz and mm/s.
-fn spectra(run: &Run, from: usize) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+pub(super) fn spectra(run: &Run, from: usize) -> (Points, Points) {
     let time = &run.time[from..];
     let n = time.len();
     let step = (time[n - 1] - time[0]) / (n - 1) as f64;
@@ -101,7 +102,11 @@ fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
 
 fn lines(area: &Area, title: &str, [x_axis, y_axis]: [&str; 2], curves: &[Curve]) -> Drawn {
     let points = || curves.iter().flat_map(|c| c.points.iter());
-    let (xs, ys) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)));
+    let (xs, mut ys) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)));
+    if curves.iter().any(|c| !c.name.is_empty()) {
+        // Room for the legend above the curves.
+        ys.end += 0.2 * (ys.end - ys.start);
+    }
     let mut chart = ChartBuilder::on(area)
         .caption(title, ("sans-serif", 17))
         .margin(14)
@@ -125,14 +130,15 @@ fn lines(area: &Area, title: &str, [x_axis, y_axis]: [&str; 2], curves: &[Curve]
         let series = LineSeries::new(curve.points.iter().copied(), color.stroke_width(1));
         let drawn = chart.draw_series(series).map_err(|e| e.to_string())?;
         if !curve.name.is_empty() {
-            drawn
-                .label(curve.name)
-                .legend(move |(x, y)| PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2)));
+            drawn.label(curve.name).legend(move |(x, y)| {
+                PathElement::new([(x, y), (x + 18, y)], color.stroke_width(2))
+            });
         }
     }
     if curves.iter().any(|c| !c.name.is_empty()) {
         chart
             .configure_series_labels()
+            .position(SeriesLabelPosition::UpperRight)
             .background_style(WHITE.mix(0.85))
             .border_style(BLACK.mix(0.3))
             .label_font(("sans-serif", 13))
@@ -174,7 +180,8 @@ fn pressure_map(area: &Area, run: &Run) -> Drawn {
         let until = 1e3 * run.time[(row + stride).min(rows - 1)];
         run.pressure.iter().enumerate().map(move |(station, column)| {
             let last = (row + stride).min(rows);
-            let share = column[row..last].iter().sum::<f64>() / (last - row) as f64 / largest.max(1.0);
+            let share =
+                column[row..last].iter().sum::<f64>() / (last - row) as f64 / largest.max(1.0);
             let low = station as f64 + 0.5;
             Rectangle::new([(1e3 * run.time[row], low), (until, low + 1.0)], shade(share).filled())
         })
@@ -192,7 +199,7 @@ fn shade(share: f64) -> RGBColor {
 
 /// Mean and largest pressure at each station in the settled part.
 fn pressure_mean(area: &Area, run: &Run, from: usize) -> Drawn {
-    let over_face = |reduce: &dyn Fn(&[f64]) -> f64| -> Vec<(f64, f64)> {
+    let over_face = |reduce: &dyn Fn(&[f64]) -> f64| -> Points {
         let columns = run.pressure.iter().enumerate();
         columns.map(|(i, c)| (i as f64 + 1.0, 1e-3 * reduce(&c[from..]))).collect()
     };

@@ -1,0 +1,51 @@
+# What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
+.DEFAULT_GOAL := help
+.PHONY: help setup fmu demo test bench release gap-check fuzz win64 docs clean
+
+PYTHON := .venv/bin/python
+
+help: ## This list
+	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | sort | expand -t 14
+
+setup: ## Install everything: compiler, libclang, Python packages (quick if nothing is missing)
+	@packaging/setup.sh build run test
+
+fmu: ## Build out/TreadBlock.fmu (linux64, any distribution since 2012)
+	@packaging/setup.sh build
+	@packaging/linux64.sh
+
+demo: ## Build the FMU, run it in fmpy, draw plots to out/demo/
+	@packaging/setup.sh build run
+	@packaging/linux64.sh
+	@$(PYTHON) demo/demo.py
+
+test: ## Set up and run every test
+	@packaging/setup.sh build run test
+	@packaging/test.sh
+
+bench: ## Time per step, against the stored budget
+	@packaging/setup.sh build
+	@cargo bench
+
+win64: ## Build the win64 library and run it under wine
+	@packaging/setup.sh build
+	@packaging/win64.sh
+
+release: ## The FMU for linux64 and win64, checked, with its checksums, in out/release/
+	@packaging/setup.sh build run test
+	@packaging/release.sh
+
+gap-check: ## Diagnose the model's gap to the shared measurements
+	@packaging/setup.sh build
+	@cargo run --quiet --release --bin tread -- gap check
+
+fuzz: ## Fuzz the C interface and the file readers, 60 s each (FUZZ_SECONDS=...)
+	@packaging/setup.sh build
+	@packaging/fuzz.sh
+
+docs: ## The book (docs/src, HTML where mdbook is installed) and the Rust documentation
+	@docs/build.sh
+	@RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
+
+clean: ## Remove what was built (keeps .venv)
+	@rm -rf target out

@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# Installs what the project needs; quick when there is nothing to do.
+#
+#   packaging/setup.sh [build] [run] [test]      (default: build run)
+#
+#   build  C compiler, libclang, zig: to build the FMU
+#   run    fmpy, numpy, matplotlib: the demo and the studies
+#   test   pytest and the importers that judge the FMU, valgrind
+#
+# Python packages go into .venv of this checkout. The distribution is asked (apt-get, as root or with
+# sudo) only for what no wheel serves: C compiler, Python's venv module, valgrind.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+wanted=("$@")
+[ ${#wanted[@]} -gt 0 ] || wanted=(build run)
+
+say() { echo "setup: $*" >&2; }
+fail() { say "$*"; exit 1; }
+
+# Installs a Debian package, asking for root only now.
+apt() {
+    command -v apt-get >/dev/null || fail "please install $* with your system's package manager"
+    local root=()
+    [ "$(id -u)" = 0 ] || root=(sudo)
+    say "installing $* from the distribution${root:+ (asks for root)}"
+    "${root[@]}" apt-get install -y --no-install-recommends "$@" >&2 ||
+        { "${root[@]}" apt-get update >&2 && "${root[@]}" apt-get install -y --no-install-recommends "$@" >&2; }
+}
+
+command -v cargo >/dev/null || fail "Rust is missing: install rustup with its stable toolchain"
+command -v cc >/dev/null || apt gcc libc6-dev
+
+python() {
+    local candidate
+    for candidate in python3 python3.13 python3.12 python3.11; do
+        if "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+            echo "$candidate"
+            return
+        fi
+    done
+    fail "Python 3.11 or newer is missing"
+}
+
+if [ ! -x .venv/bin/python ]; then
+    base=$(python)
+    "$base" -c 'import venv, ensurepip' 2>/dev/null || apt python3-venv
+    say "making .venv"
+    "$base" -m venv .venv
+fi
+
+# Installs a requirements file once; the stamp is its content.
+pip_install() {
+    local file=$1 stamp=".venv/stamp-$(basename "$1")"
+    cmp -s "$file" "$stamp" && return
+    say "installing $(grep -vE '^ *(#|$)' "$file" | tr '\n' ' ')into .venv"
+    PIP_DISABLE_PIP_VERSION_CHECK=1 .venv/bin/python -m pip install --quiet -r "$file" >&2
+    cp "$file" "$stamp"
+}
+
+has_libclang() {
+    [ -n "${LIBCLANG_PATH:-}" ] && return
+    ldconfig -p 2>/dev/null | grep -q 'libclang[-.0-9]*\.so' && return
+    ls /usr/lib/llvm-*/lib/libclang*.so* >/dev/null 2>&1
+}
+
+libclang() {
+    [ -f .venv/libclang.env ] && return
+    if ! has_libclang; then
+        say "installing libclang into .venv"
+        .venv/bin/python -m pip install --quiet libclang >&2
+        local folder
+        folder=$(.venv/bin/python -c 'import clang, os; print(os.path.join(list(clang.__path__)[0], "native"))')
+        {
+            echo "export LIBCLANG_PATH='$folder'"
+            # The wheel brings no headers of the compiler; gcc's serve.
+            echo "export BINDGEN_EXTRA_CLANG_ARGS='-I$(cc -print-file-name=include)'"
+        } > .venv/libclang.env
+    else
+        : > .venv/libclang.env
+    fi
+}
+
+for part in "${wanted[@]}"; do
+    case $part in
+        build)
+            libclang
+            pip_install packaging/requirements-build.txt ||
+                say "zig cannot be had: the FMU will need this machine's glibc"
+            ;;
+        run) pip_install packaging/requirements.txt ;;
+        test)
+            pip_install packaging/requirements-test.txt
+            command -v valgrind >/dev/null || apt valgrind
+            command -v objdump >/dev/null || apt binutils
+            ;;
+        *) fail "unknown part $part: build, run, test" ;;
+    esac
+done

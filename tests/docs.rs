@@ -1,0 +1,108 @@
+//! The book is true: links lead somewhere, tutorials run, equations cited by the code exist.
+#![cfg(feature = "cli")]
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path, extension));
+        } else if path.extension().is_some_and(|e| e == extension) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn tread(folder: &Path, arguments: &[&str]) -> std::process::Output {
+    Command::new(env!("CARGO_BIN_EXE_tread")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// A folder of this test's own with the reference pages in it.
+fn reference_pages(test: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("tread-docs-{test}-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    assert!(tread(&folder, &["reference", "reference"]).status.success());
+    folder
+}
+
+#[test]
+fn every_link_of_the_book_and_the_readme_leads_somewhere() {
+    let pages = reference_pages("links");
+    let book = root().join("docs/src");
+    let mut documents = files(&book, "md");
+    documents.extend(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|f| root().join(f)));
+    let mut broken = Vec::new();
+    for document in documents.iter().filter(|d| !d.starts_with(book.join("reference"))) {
+        let text = read(document);
+        for target in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let target = target.split('#').next().unwrap_or("");
+            if target.is_empty() || target.contains("://") {
+                continue;
+            }
+            let made = target
+                .rsplit_once("reference/")
+                .map(|(_, page)| pages.join("reference").join(page));
+            let path = made.unwrap_or_else(|| document.parent().unwrap().join(target));
+            if !path.exists() {
+                broken.push(format!("{}: {target}", document.display()));
+            }
+        }
+    }
+    std::fs::remove_dir_all(pages).unwrap();
+    assert!(broken.is_empty(), "broken links:\n{}", broken.join("\n"));
+}
+
+#[test]
+fn the_shell_parts_of_the_tutorials_run() {
+    for name in ["slide", "roll"] {
+        let text = read(&root().join(format!("docs/src/tutorials/{name}.md")));
+        let script: String =
+            text.split("```sh\n").skip(1).filter_map(|part| part.split("```").next()).collect();
+        let folder =
+            std::env::temp_dir().join(format!("tread-tutorial-{name}-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let binary = Path::new(env!("CARGO_BIN_EXE_tread")).parent().unwrap();
+        let path = format!("{}:{}", binary.display(), std::env::var("PATH").unwrap_or_default());
+        let output = Command::new("bash")
+            .args(["-euo", "pipefail", "-c", &script])
+            .current_dir(&folder)
+            .env("PATH", path)
+            .output()
+            .unwrap();
+        let talk = String::from_utf8_lossy(&output.stderr).into_owned();
+        std::fs::remove_dir_all(folder).unwrap();
+        assert!(output.status.success(), "{name}:\n{script}\n{talk}");
+    }
+}
+
+#[test]
+fn every_equation_that_the_code_cites_is_in_the_theory() {
+    let theory = read(&root().join("docs/src/theory.md"));
+    let mut missing = Vec::new();
+    for path in files(&root().join("src"), "rs") {
+        let text = read(&path);
+        for cited in text.split("theory eq").skip(1) {
+            let end = cited.find(')').unwrap_or(0);
+            let numbers = cited[..end].split(|c: char| !c.is_ascii_digit() && c != '.');
+            for number in numbers.map(|n| n.trim_matches('.')).filter(|n| n.contains('.')) {
+                if !theory.contains(&format!("({number})")) {
+                    missing.push(format!("{}: eq. {number}", path.display()));
+                }
+            }
+        }
+    }
+    assert!(missing.is_empty(), "not in docs/src/theory.md:\n{}", missing.join("\n"));
+}
