@@ -81,17 +81,29 @@ pub(super) fn face(reduction: &Reduction, params: &Params) -> Result<Face, Fault
         FrictionForm::Table => Some(read_table(&params.friction.table_file)?),
         _ => None,
     };
+    let adhesion = &params.effect.adhesion;
+    let (damping, viscosity) = params.effect.contact_damping.coefficients();
     Ok(Face {
         area: reduction.weights.iter().map(|w| w * params.block.width).collect(),
-        profile: vec![0.0; reduction.contact_nodes()],
+        profile: profile(reduction, params),
         smoothing_speed: params.friction.smoothing_speed,
         friction: Law::new(&params.friction, table.as_ref()),
         contact: params.contact.clone(),
-        shear_strength: 0.0,
+        shear_strength: if adhesion.enabled { adhesion.shear_strength } else { 0.0 },
         shear_smoothing: params.friction.smoothing_speed,
-        pull_off: 0.0,
-        damping: 0.0,
+        pull_off: if adhesion.enabled { adhesion.pull_off } else { 0.0 },
+        adhesion_pressure: adhesion.saturation(),
+        damping,
+        viscosity,
+        road: params.effect.road_texture.texture(),
     })
+}
+
+/// How far each contact node lies behind the plane of the road when the face just touches [m].
+fn profile(reduction: &Reduction, params: &Params) -> Vec<f64> {
+    let x = &reduction.mesh.x;
+    let (tilt, edge) = (&params.effect.misalignment, &params.effect.worn_edge);
+    x.iter().map(|at| tilt.gap(*at) + edge.depth(at - x[0])).collect()
 }
 
 /// The integrator's settings.

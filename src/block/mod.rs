@@ -12,6 +12,7 @@ use crate::drive::{Pose, Segment};
 use crate::dynamics::{
     equilibrium, kinematics, Integrator, Kinematics, Ledger, Linear, Stage, State, Statistics,
 };
+use crate::effects::Memory;
 use crate::error::{Fault, Problem};
 use crate::params::{check, table, Params, Variability, Wear};
 use crate::reduction::Reduction;
@@ -28,6 +29,7 @@ pub struct TreadBlock {
     state: State,
     integrator: Integrator,
     stations: Stations,
+    memory: Memory,
     wear_mass: f64,
     /// Prescribed motion at the time reached.
     motion: Kinematics,
@@ -54,6 +56,7 @@ impl TreadBlock {
         let linear = build::linear(&reduction, params);
         let face = build::face(&reduction, params)?;
         let integrator = Integrator::new(&linear, build::settings(&params.solver));
+        let nodes = linear.nodes();
         let mut block = Self {
             state: State::new(&linear),
             stations: Stations::along(&reduction.mesh),
@@ -62,6 +65,7 @@ impl TreadBlock {
             linear,
             face,
             integrator,
+            memory: Memory::new(params, nodes),
             wear_mass: 0.0,
             motion: Kinematics::default(),
             outputs: Outputs::default(),
@@ -82,8 +86,10 @@ impl TreadBlock {
         self.wear_mass = 0.0;
         self.integrator = Integrator::new(&self.linear, build::settings(&self.params.solver));
         equilibrium::settle(&self.linear, &self.face, pose, &mut self.state)?;
+        self.memory.reset(&self.params.effect, &mut self.state);
         self.motion = kinematics(&Segment::still(pose), 0.0);
         self.observe();
+        self.memory.settle_sensor(&self.outputs);
         Ok(())
     }
 
@@ -96,6 +102,7 @@ impl TreadBlock {
         let start = self.state.time;
         let (law, density) = (&self.params.wear, self.params.rubber.density);
         let (area, wear_mass) = (&self.face.area, &mut self.wear_mass);
+        let (effects, memory, linear) = (&self.params.effect, &mut self.memory, &self.linear);
         let outcome = self.integrator.advance(
             &self.linear,
             &self.face,
@@ -104,12 +111,23 @@ impl TreadBlock {
             segment,
             &mut |step, stage, state| {
                 *wear_mass += wear_off(law, density, area, step, stage, &mut state.worn);
+                memory.after_step(effects, linear, area, step, stage, state);
             },
         );
         let reached = self.state.time - start;
         self.motion = kinematics(segment, reached);
         self.observe();
+        self.memory.follow_belt(&self.params.effect, reached, &self.outputs);
+        self.memory.show(&self.params.effect, &mut self.outputs);
         outcome
+    }
+
+    /// Lets the block rest under its load for `duration` [s] without the time going on: contacts age
+    /// and cool. A rest before the road starts need not be simulated.
+    pub fn rest(&mut self, duration: f64) {
+        self.memory.rest(&self.params.effect, duration, &mut self.state);
+        self.observe();
+        self.memory.show(&self.params.effect, &mut self.outputs);
     }
 
     /// Time reached [s].
@@ -176,6 +194,7 @@ impl TreadBlock {
     pub fn save(&self, out: &mut Vec<f64>) {
         out.extend([self.wear_mass, self.integrator.last_h()]);
         out.extend(self.motion.to_numbers());
+        self.memory.save(out);
         self.state.save(out);
     }
 
@@ -185,14 +204,18 @@ impl TreadBlock {
         let mut state = self.state.clone();
         let Some((head, rest)) = from.split_at_checked(2) else { return false };
         let Some((motion, rest)) = rest.split_first_chunk() else { return false };
+        let mut memory = self.memory.clone();
+        let Some(rest) = memory.restore(rest) else { return false };
         if !state.restore(rest).is_some_and(<[f64]>::is_empty) {
             return false;
         }
+        self.memory = memory;
         self.wear_mass = head[0];
         self.integrator.resume(head[1]);
         self.motion = Kinematics::from_numbers(motion);
         self.state = state;
         self.observe();
+        self.memory.show(&self.params.effect, &mut self.outputs);
         true
     }
 }
@@ -210,7 +233,7 @@ fn wear_off(
     let mut mass = 0.0;
     for i in 0..worn.len() {
         if traction.pressure[i] > 0.0 {
-            let mu = traction.tangential[i] / traction.normal[i];
+            let mu = traction.tangential[i] / (traction.pressure[i] * area[i]);
             let depth =
                 h * wear::depth_rate(law, density, mu, traction.pressure[i], stage.slip[i]);
             worn[i] += depth;

@@ -2,6 +2,7 @@
 
 use super::friction::{smoothed_sign, FrictionLaw, Law};
 use super::normal;
+use crate::effects::road_texture::Texture;
 use crate::params::Contact;
 
 /// The tread face and the laws that hold on it.
@@ -23,8 +24,14 @@ pub struct Face {
     pub shear_smoothing: f64,
     /// Pull-off pressure [Pa] of full contact (adhesion).
     pub pull_off: f64,
+    /// Pressure over which the adhering share of the face grows [Pa].
+    pub adhesion_pressure: f64,
     /// Pressure per pressure and approach speed [s/m] (contact damping).
     pub damping: f64,
+    /// Pressure per approach speed [Pa s/m] (contact damping).
+    pub viscosity: f64,
+    /// Height of the road, where it is not plane.
+    pub road: Option<Texture>,
 }
 
 /// Forces of the road on the contact nodes and how they change, road frame.
@@ -99,7 +106,9 @@ impl Face {
     fn pressure(&self, compression: f64, a: f64, lift: f64) -> (f64, f64) {
         let (p, stiffness) = normal::pressure(&self.contact, compression);
         let damped = 1.0 - self.damping * lift;
-        if self.damping == 0.0 {
+        if self.viscosity > 0.0 {
+            self.viscous_pressure(compression, a, lift, p, stiffness)
+        } else if self.damping == 0.0 {
             (p, -a * stiffness)
         } else if damped <= 0.0 {
             (0.0, 0.0)
@@ -108,15 +117,37 @@ impl Face {
         }
     }
 
-    /// Adds adhesion at node `i`: shear τ_a and pull p_a over the share 1 − exp(−p/p_r) of real
-    /// contact.
+    /// Pressure with a damper beside the spring, d (1 − exp(−u/u₀)) u̇, never negative.
+    fn viscous_pressure(&self, u: f64, a: f64, lift: f64, p: f64, stiffness: f64) -> (f64, f64) {
+        let left = (-u.max(0.0) / self.contact.depth).exp();
+        let damper = self.viscosity * (1.0 - left);
+        let sum = p - damper * lift;
+        if u <= 0.0 || sum <= 0.0 {
+            return (0.0, 0.0);
+        }
+        let stiffening = self.viscosity * left / self.contact.depth;
+        (sum, -a * (stiffness - stiffening * lift) - damper)
+    }
+
+    /// Normal stress of a face at rest, pressure less pull-off [Pa], and its derivative [Pa/m].
+    pub fn stress_at_rest(&self, compression: f64) -> (f64, f64) {
+        let (p, stiffness) = normal::pressure(&self.contact, compression);
+        if self.pull_off == 0.0 {
+            return (p, stiffness);
+        }
+        let left = (-p / self.adhesion_pressure).exp();
+        let slope = self.pull_off * left / self.adhesion_pressure;
+        (p - self.pull_off * (1.0 - left), stiffness * (1.0 - slope))
+    }
+
+    /// Adds adhesion at node `i`: shear τ_a and pull p_a over the adhering share 1 − exp(−p/p_s).
     fn adhere(&self, i: usize, p: f64, p_by_lift: f64, slip: f64, out: &mut Traction) {
         if self.shear_strength == 0.0 && self.pull_off == 0.0 {
             return;
         }
-        let p_r = self.contact.reference_pressure;
-        let share = 1.0 - (-p / p_r).exp();
-        let share_by_lift = (1.0 - share) / p_r * p_by_lift;
+        let p_s = self.adhesion_pressure;
+        let share = 1.0 - (-p / p_s).exp();
+        let share_by_lift = (1.0 - share) / p_s * p_by_lift;
         let (sign, slope) = smoothed_sign(slip, self.shear_smoothing);
         let area = self.area[i];
         out.tangential[i] -= self.shear_strength * share * sign * area;

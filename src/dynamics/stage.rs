@@ -166,7 +166,8 @@ impl Stage {
         motion: &Kinematics,
     ) -> [f64; 2] {
         let (modes, a) = (linear.modes(), matrices.a);
-        let acceleration = to_block(motion, prescribed(linear, motion.acceleration));
+        let driven = linear.prescribed_acceleration(motion.acceleration);
+        let acceleration = to_block(motion, driven);
         for m in 0..modes {
             self.rhs[m] = self.w[m]
                 - matrices.a_omega2[m] * self.z[m]
@@ -186,16 +187,16 @@ impl Stage {
         dense::add_columns(&mut self.v_free, &linear.by_mode, &self.scratch);
         let mut h = [0.0; 2];
         for (j, dof) in linear.base.iter().enumerate() {
-            let (reference, rate) = match dof.axis {
-                0 => (motion.position[0], motion.velocity[0]),
-                _ => (0.0, 0.0),
+            // The drive carries the mass of a deflection along.
+            let external = match dof.axis {
+                1 => -motion.load,
+                _ => -(linear.block_mass + dof.mass) * driven[0],
             };
-            let external = if dof.axis == 1 { -motion.load } else { 0.0 };
             let velocity = self.base_velocity[j];
-            let stretch = self.base[j] + a * velocity - reference;
+            let stretch = self.base[j] + a * velocity;
             let coupling = &matrices.base_coupling[j * modes..(j + 1) * modes];
             let inertia: f64 = dense::dot(coupling, &self.scratch) - dense::dot(coupling, &self.w);
-            h[j] = a * (external - dof.damping * (velocity - rate) - dof.stiffness * stretch)
+            h[j] = a * (external - dof.damping * velocity - dof.stiffness * stretch)
                 - inertia;
         }
         self.add_face_velocity(linear, matrices, motion, h);
@@ -234,7 +235,7 @@ impl Stage {
                 height = self.base[j];
             }
         }
-        let velocity = prescribed(linear, motion.velocity);
+        let velocity = linear.prescribed(motion.velocity);
         for i in 0..nodes {
             let (x, z) = (linear.node_x[i] + self.u[i], linear.node_z + self.u[nodes + i]);
             self.rest_compression[i] = -(height + sin * x + cos * z) - gap[i];
@@ -384,14 +385,6 @@ impl Stage {
 /// Change of the sliding speeds, as a share of the smoothing speed, at which Newton's method stops;
 /// it converges quadratically, so the error left is about the square of it.
 const CHANGE_TOLERANCE: f64 = 1e-3;
-
-/// The parts of a vector that are prescribed: zero along the free directions.
-fn prescribed(linear: &Linear, mut vector: [f64; 2]) -> [f64; 2] {
-    for dof in &linear.base {
-        vector[dof.axis] = 0.0;
-    }
-    vector
-}
 
 /// A road vector in the block's frame.
 pub fn to_block(motion: &Kinematics, [x, z]: [f64; 2]) -> [f64; 2] {

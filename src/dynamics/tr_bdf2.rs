@@ -114,10 +114,31 @@ impl TrBdf2 {
         for ((gap, profile), worn) in self.gap.iter_mut().zip(&face.profile).zip(&state.worn) {
             *gap = profile + worn;
         }
+        self.raise_road(linear, face, state, &ends[2], h);
         self.first_stage(linear, face, state, matrices, &ends)?;
         self.second_stage(linear, face, state, matrices, &ends, h)?;
         self.write_trial(linear, &ends[2]);
         Ok(())
+    }
+
+    /// Takes the height of the road off the gaps, where the nodes will stand at the end of the step.
+    fn raise_road(
+        &mut self,
+        linear: &Linear,
+        face: &Face,
+        state: &State,
+        end: &Kinematics,
+        h: f64,
+    ) {
+        let Some(road) = &face.road else { return };
+        let nodes = linear.nodes();
+        let [sin, cos] = end.sin_cos;
+        let middle = end.position[0] + linear.deflection(&state.base);
+        for (i, gap) in self.gap.iter_mut().enumerate() {
+            let x = linear.node_x[i] + self.u[i] + h * self.v[i];
+            let z = linear.node_z + self.u[nodes + i];
+            *gap -= road.height(middle + cos * x - sin * z);
+        }
     }
 
     /// Makes the trial the state.
@@ -333,11 +354,7 @@ pub fn kinematics(segment: &Segment, s: f64) -> Kinematics {
 
 /// Prescribed acceleration of the clamped face in the block's frame [m/s²].
 fn inertia(linear: &Linear, motion: &Kinematics) -> [f64; 2] {
-    let free = |axis: usize| linear.is_free(axis);
-    to_block(
-        motion,
-        [0, 1].map(|axis| if free(axis) { 0.0 } else { motion.acceleration[axis] }),
-    )
+    to_block(motion, linear.prescribed_acceleration(motion.acceleration))
 }
 
 /// Velocity of the free clamped face in the block's frame [m/s].
