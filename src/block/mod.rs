@@ -1,6 +1,7 @@
 //! The assembled tread block: parameters in, motion and load per communication step in, outputs out.
 
 mod build;
+mod memory;
 mod observe;
 mod signals;
 
@@ -12,10 +13,10 @@ use crate::drive::{Pose, Segment};
 use crate::dynamics::{
     equilibrium, kinematics, Integrator, Kinematics, Ledger, Linear, Stage, State, Statistics,
 };
-use crate::effects::Memory;
 use crate::error::{Fault, Problem};
 use crate::params::{check, table, Params, Variability, Wear};
 use crate::reduction::Reduction;
+use memory::Memory;
 use observe::Stations;
 use std::sync::Arc;
 

@@ -1,5 +1,6 @@
 //! The linear part of the block in SI units: decoupled modes of the clamped block and its carriage.
 
+use crate::effects::viscoelastic_modulus::Branch;
 use crate::params::{NormalDrive, Params};
 use crate::reduction::Reduction;
 
@@ -15,15 +16,6 @@ pub struct BaseDof {
     pub damping: f64,
     /// Stiffness [N/m] towards 0.
     pub stiffness: f64,
-}
-
-/// One branch of a generalised Maxwell model beside the elastic modulus.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Branch {
-    /// Modulus of the branch over Young's modulus [-].
-    pub share: f64,
-    /// Relaxation time [s].
-    pub time: f64,
 }
 
 /// z̈ + βω²ż + ω²(z + Σ gⱼ(z − yⱼ)) = Φᵀf − Γ·a, ẏⱼ = (z − yⱼ)/τⱼ, per mode (theory eq. 3.1).
@@ -81,7 +73,10 @@ impl Linear {
                 stiffness: 0.0,
             });
         }
-        base.extend(params.effect.rig_compliance.degree_of_freedom(params.carriage.mass));
+        if let Some(rig) = params.effect.rig_compliance.oscillator(params.carriage.mass) {
+            let (mass, damping, stiffness) = (rig.mass, rig.damping, rig.stiffness);
+            base.push(BaseDof { axis: 0, mass, damping, stiffness });
+        }
         Self {
             omega2: reduction.lambda.iter().map(|l| l * e_over_rho).collect(),
             damping: rubber.stiffness_damping,

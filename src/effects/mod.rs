@@ -2,14 +2,13 @@
 //!
 //! To add an effect: write its file (parameters, law, table, what a fit may vary) and add its line
 //! to [`effects!`]. Effects of geometry, contact and rubber act where the block is built
-//! (`block::build`); those that remember something live in [`memory`].
+//! (`block::build`); what they remember is the
+//! block's memory (`block::memory`).
 
 pub mod fit;
-pub mod memory;
 
 use crate::params::ParamSpec;
 pub use fit::{FitForm, FitParam, FitSpec, Module, Spread};
-pub use memory::Memory;
 
 /// Registers effects: a field of [`Effects`], a parameter table and a fit specification each.
 macro_rules! effects {

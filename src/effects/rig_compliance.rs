@@ -1,10 +1,20 @@
 //! Rig compliance: the carriage that holds the block gives way along the road.
 
 use super::fit::{log, FitForm, FitSpec, Module};
-use crate::dynamics::linear::BaseDof;
 use crate::params::table::{DisplayUnit, Item};
 use crate::params::ParamSpec;
 use crate::{bool_param, enum_param, real_param};
+
+/// A mass on a spring and a damper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Oscillator {
+    /// Mass [kg].
+    pub mass: f64,
+    /// Damping [N s/m].
+    pub damping: f64,
+    /// Stiffness [N/m].
+    pub stiffness: f64,
+}
 
 /// What moves on the tangential spring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -53,8 +63,8 @@ impl Default for RigCompliance {
 }
 
 impl RigCompliance {
-    /// The degree of freedom in force; none where the effect is off. `carriage_mass` [kg].
-    pub fn degree_of_freedom(&self, carriage_mass: f64) -> Option<BaseDof> {
+    /// The oscillator in force; none where the effect is off. `carriage_mass` [kg].
+    pub fn oscillator(&self, carriage_mass: f64) -> Option<Oscillator> {
         if !self.enabled || self.compliance == 0.0 {
             return None;
         }
@@ -64,7 +74,7 @@ impl RigCompliance {
             Form::Carriage => carriage_mass,
         };
         let damping = 2.0 * self.damping_ratio * (mass * stiffness).sqrt();
-        Some(BaseDof { axis: 0, mass, damping, stiffness })
+        Some(Oscillator { mass, damping, stiffness })
     }
 }
 
@@ -115,8 +125,8 @@ mod tests {
     fn the_fixture_resonates_where_it_says() {
         // Closed form: f = √(k/m)/2π.
         let on = RigCompliance { enabled: true, ..RigCompliance::default() };
-        let dof = on.degree_of_freedom(2.0).unwrap();
-        let frequency = (dof.stiffness / dof.mass).sqrt() / std::f64::consts::TAU;
+        let rig = on.oscillator(2.0).unwrap();
+        let frequency = (rig.stiffness / rig.mass).sqrt() / std::f64::consts::TAU;
         assert!((frequency - 700.0).abs() < 1e-9);
     }
 }

@@ -1,10 +1,18 @@
 //! Frequency-dependent modulus: Maxwell branches beside the static modulus.
 
 use super::fit::{log, FitForm, FitSpec, Module};
-use crate::dynamics::linear::Branch;
 use crate::params::table::{DisplayUnit, Item};
 use crate::params::ParamSpec;
 use crate::{bool_param, enum_param, real_param};
+
+/// One branch of a generalised Maxwell model beside the elastic modulus.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Branch {
+    /// Modulus of the branch over Young's modulus [-].
+    pub share: f64,
+    /// Relaxation time [s].
+    pub time: f64,
+}
 
 /// Number of branches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

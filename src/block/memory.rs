@@ -1,9 +1,9 @@
 //! What the effects remember while the block moves.
 
-use super::sensor_dynamics::Channel;
-use super::Effects;
-use crate::block::Outputs;
+use super::signals::Outputs;
 use crate::dynamics::{Linear, Stage, State};
+use crate::effects::sensor_dynamics::Channel;
+use crate::effects::Effects;
 use crate::params::Params;
 
 /// Memory of the effects that have one; part of the block's state.
@@ -11,7 +11,7 @@ use crate::params::Params;
 pub struct Memory {
     /// Flash temperature rise per contact node [K].
     rise: Vec<f64>,
-    /// Age per contact node, see [`super::friction_ageing`].
+    /// Age per contact node, see [`crate::effects::friction_ageing`].
     age: Vec<f64>,
     /// Amplitude of strain [-].
     amplitude: f64,
