@@ -2,5 +2,8 @@
 
 pub mod identify;
 pub mod paper;
+pub mod plot;
+pub mod report;
 pub mod slides;
 pub mod table_one;
+pub mod vibration;

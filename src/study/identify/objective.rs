@@ -86,12 +86,26 @@ impl Compared {
         let (hz, swing) = (self.hz(), observed.metrics.velocity_amplitude);
         let death = (-observed.growth / 1000.0).clamp(0.0, 4.0);
         match self.cell() {
-            Cell::Hz(paper) if hz > 0.0 => (hz / paper).ln().clamp(-1.0, 1.0),
-            Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => 0.3 + 0.1 * death,
+            Cell::Hz(paper) if hz > 0.0 => snap_ratio(hz, paper).clamp(-1.0, 1.0),
+            Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => 0.4 + 0.2 * death,
             Cell::Between(low, high) => (hz / low).ln().min(0.0) + (hz / high).ln().max(0.0),
             _ if hz <= 0.0 => 0.0,
-            _ => 0.1 + 0.05 * (swing / SPEEDS[self.row]).min(4.0),
+            _ => 0.2 + 0.15 * (swing / SPEEDS[self.row]).min(4.0),
         }
+    }
+}
+
+/// Logarithm of the frequency ratio. Where every second or third snap differs a little, the period
+/// counts that many snaps: then the rate of snaps is compared, at a small price.
+fn snap_ratio(hz: f64, paper: f64) -> f64 {
+    let ratio = |snaps: f64| (snaps * hz / paper).ln();
+    let plain = ratio(1.0);
+    let several = [2.0, 3.0, 4.0].map(ratio);
+    let nearest = several.into_iter().min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(plain);
+    if nearest.abs() + 0.1 < plain.abs() {
+        nearest + 0.05_f64.copysign(nearest)
+    } else {
+        plain
     }
 }
 

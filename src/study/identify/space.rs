@@ -47,7 +47,7 @@ const fn log(name: &'static str, low: f64, high: f64) -> Unknown {
 }
 
 /// Unknowns whatever the friction law.
-const COMMON: [Unknown; 9] = [
+const COMMON: [Unknown; 10] = [
     linear("friction.mu_inf", 0.02, 1.2),
     log("friction.mu_drop", 0.1, 3.0),
     log("friction.decay_speed", 0.05, 20.0),
@@ -57,6 +57,7 @@ const COMMON: [Unknown; 9] = [
     log("contact.reference_pressure", 3e3, 1e6),
     log("contact.depth", 2e-6, 2e-4),
     log("carriage.mass", 1e-2, 1e3),
+    log("carriage.damping", 1.0, 3e3),
 ];
 
 /// The unknowns that go with a friction law.
@@ -66,6 +67,11 @@ pub fn unknowns(form: FrictionForm) -> Vec<Unknown> {
         FrictionForm::Exponential => out.push(linear("friction.decay_exponent", 0.25, 1.5)),
         FrictionForm::Rational => out.push(linear("friction.rational_exponent", 0.25, 2.5)),
         FrictionForm::LogBell => out.push(linear("friction.bell_steepness", 0.1, 1.5)),
+        FrictionForm::TwoExponentials => out.extend([
+            linear("friction.decay_exponent", 0.4, 1.5),
+            linear("friction.second_share", 0.0, 1.0),
+            log("friction.second_speed", 0.3, 30.0),
+        ]),
         FrictionForm::Table => {}
     }
     out
