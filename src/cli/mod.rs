@@ -88,7 +88,7 @@ pub fn main() -> ExitCode {
         Command::Plot(arguments) => plot::run(&arguments),
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
-        Command::Study(arguments) => study::run(&arguments),
+        Command::Study(arguments) => study::study(&arguments),
         Command::Fmu(arguments) => fmu::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments, Arguments::command()),
         Command::Completions { shell } => completions(shell),

@@ -35,8 +35,6 @@ pub enum Law {
     LogBell(LogBell),
     /// See [`Table`].
     Table(Box<Table>),
-    /// See [`TwoExponentials`].
-    TwoExponentials(TwoExponentials),
 }
 
 impl Law {
@@ -50,12 +48,6 @@ impl Law {
             (FrictionForm::LogBell, _) => {
                 Self::LogBell(LogBell { common, steepness: params.bell_steepness })
             }
-            (FrictionForm::TwoExponentials, _) => Self::TwoExponentials(TwoExponentials {
-                common,
-                exponent: params.decay_exponent,
-                share: params.second_share,
-                speed: params.second_speed,
-            }),
             (FrictionForm::Table, Some(table)) => {
                 let mut table = table.clone();
                 table.smoothing_speed = params.smoothing_speed;
@@ -73,7 +65,6 @@ impl FrictionLaw for Law {
             Self::Rational(law) => law.mu(p, v),
             Self::LogBell(law) => law.mu(p, v),
             Self::Table(law) => law.mu(p, v),
-            Self::TwoExponentials(law) => law.mu(p, v),
         }
     }
 }
@@ -140,25 +131,6 @@ impl FrictionLaw for Exponential {
         let power = if self.exponent == 1.0 { ratio } else { ratio.powf(self.exponent) };
         let fall = (-power).exp();
         self.common.mu(p, v, fall, -self.exponent * power * fall)
-    }
-}
-
-/// Two exponentials: fall = (1 − s) exp(−(|v|/v_d)^γ) + s exp(−|v|/v₂), a steep part that excites at
-/// small speeds and a slow one that goes on falling while the block slips at metres per second.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TwoExponentials {
-    common: Common,
-    exponent: f64,
-    share: f64,
-    speed: f64,
-}
-
-impl FrictionLaw for TwoExponentials {
-    fn mu(&self, p: f64, v: f64) -> Mu {
-        let power = (v.abs() / self.common.decay_speed).powf(self.exponent);
-        let slow = v.abs() / self.speed;
-        let (first, second) = ((1.0 - self.share) * (-power).exp(), self.share * (-slow).exp());
-        self.common.mu(p, v, first + second, -self.exponent * power * first - slow * second)
     }
 }
 

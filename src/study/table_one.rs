@@ -4,7 +4,10 @@ use std::fmt::Write;
 
 use super::identify::objective::{compare, Compared, Fineness};
 use super::paper::{Cell, Column, SPEEDS, TABLE_1};
+use super::plot::{svg, Panel, Series};
+use super::report::{Study, Verdict};
 use super::slides::Reductions;
+use crate::error::Fault;
 use crate::params::Params;
 
 /// The table and how well it fits.
@@ -110,5 +113,70 @@ impl TableOne {
             self.disagreements().len()
         );
         out
+    }
+}
+
+/// The study.
+///
+/// # Errors
+/// What the drawing library says.
+pub fn table_1(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
+    let table = TableOne::simulate(compound, &TABLE_1, fineness);
+    let mut series = Vec::new();
+    for (color, column) in TABLE_1.iter().enumerate() {
+        let cells = || table.cells.iter().filter(|c| c.column.name == column.name);
+        let model = cells().filter(|c| c.hz() > 0.0).map(|c| (1e3 * SPEEDS[c.row], c.hz()));
+        let paper = cells().filter_map(|c| match c.cell() {
+            Cell::Hz(hz) => Some((1e3 * SPEEDS[c.row], hz)),
+            _ => None,
+        });
+        series.push(Series::line(column.name, color, model.collect()));
+        series.push(Series::dots("", color, paper.collect()));
+    }
+    let axes = ["sliding speed [mm/s]", "stick-slip frequency [Hz]"];
+    let picture = svg(&[Panel::new("Table 1: dots are the paper's", axes, series)], 1)?;
+    Ok(Study {
+        name: "table-1",
+        title: "Stick-slip frequencies over geometry and speed",
+        notes: table.text(),
+        tables: vec![("table-1.csv".to_string(), table.csv())],
+        pictures: vec![("table-1.svg".to_string(), picture)],
+        verdicts: table.verdicts(),
+    })
+}
+
+impl TableOne {
+    fn verdicts(&self) -> Vec<Verdict> {
+        let per_cent = |x: f64| format!("{:.1} %", 100.0 * x);
+        let wrong = self.disagreements();
+        let names: Vec<String> = wrong
+            .iter()
+            .map(|c| format!("{} at {:.0} mm/s", c.column.name, 1e3 * SPEEDS[c.row]))
+            .collect();
+        let columns = |check: &dyn Fn(&[&Compared]) -> bool| {
+            TABLE_1.iter().all(|column| {
+                let cells: Vec<&Compared> =
+                    self.cells.iter().filter(|c| c.column.name == column.name).collect();
+                check(&cells)
+            })
+        };
+        let rises = columns(&|cells| {
+            let loud: Vec<f64> = cells.iter().map(|c| c.hz()).filter(|hz| *hz > 0.0).collect();
+            loud.windows(2).all(|w| w[1] > w[0])
+        });
+        let below = columns(&|cells| {
+            cells.iter().all(|c| c.column.f0.is_none_or(|f0| c.hz() <= f0))
+        });
+        vec![
+            Verdict::new("median error at most 4 %", self.median_error() <= 0.04, per_cent(self.median_error())),
+            Verdict::new("no cell above 10 %", self.max_error() <= 0.10, per_cent(self.max_error())),
+            Verdict::new(
+                "the right cells are silent",
+                wrong.is_empty(),
+                if names.is_empty() { "all".to_string() } else { names.join(", ") },
+            ),
+            Verdict::new("the frequency rises with the speed", rises, "in every column"),
+            Verdict::new("no frequency exceeds the first eigenfrequency", below, "f0 of the paper"),
+        ]
     }
 }
