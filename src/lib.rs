@@ -24,6 +24,8 @@ pub mod columns;
 pub mod scenario;
 pub mod metrics;
 #[cfg(feature = "cli")]
+pub mod study;
+#[cfg(feature = "cli")]
 pub mod cli;
 
 pub use block::TreadBlock;

@@ -83,7 +83,25 @@ pub(super) fn face(reduction: &Reduction, params: &Params) -> Result<Face, Fault
     };
     let area: Vec<f64> = reduction.weights.iter().map(|w| w * params.block.width).collect();
     let law = Law::new(&params.friction, table.as_ref());
-    Ok(Face::new(&area, law, &params.contact, params.friction.smoothing_speed))
+    let (adhesion, effect) = (&params.effect.adhesion, &params.effect);
+    let (damping, viscosity) = effect.contact_damping.coefficients();
+    let smoothing_speed = params.friction.smoothing_speed;
+    Ok(Face {
+        shear_strength: if adhesion.enabled { adhesion.shear_strength } else { 0.0 },
+        pull_off: if adhesion.enabled { adhesion.pull_off } else { 0.0 },
+        adhesion_pressure: adhesion.saturation(),
+        damping,
+        viscosity,
+        road: effect.road_texture.texture(),
+        ..Face::new(&area, &profile(reduction, params), law, &params.contact, smoothing_speed)
+    })
+}
+
+/// How far each contact node lies behind the plane of the road when the face just touches [m].
+fn profile(reduction: &Reduction, params: &Params) -> Vec<f64> {
+    let x = &reduction.mesh.x;
+    let (tilt, edge) = (&params.effect.misalignment, &params.effect.worn_edge);
+    x.iter().map(|at| tilt.gap(*at) + edge.depth(at - x[0])).collect()
 }
 
 /// The integrator.

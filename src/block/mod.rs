@@ -1,6 +1,7 @@
 //! The assembled tread block: parameters in, motion and load per communication step in, outputs out.
 
 mod build;
+mod memory;
 mod observe;
 mod signals;
 
@@ -15,6 +16,7 @@ use crate::dynamics::{
 use crate::error::{Fault, Problem};
 use crate::params::{check, table, Params, Variability, Wear};
 use crate::reduction::Reduction;
+use memory::Memory;
 use observe::Stations;
 use std::sync::Arc;
 
@@ -28,6 +30,7 @@ pub struct TreadBlock {
     state: State,
     integrator: Integrator,
     stations: Stations,
+    memory: Memory,
     wear_mass: f64,
     /// Prescribed motion at the time reached.
     motion: Kinematics,
@@ -54,6 +57,7 @@ impl TreadBlock {
         let linear = build::linear(&reduction, params);
         let face = build::face(&reduction, params)?;
         let integrator = build::integrator(&linear, &face, params);
+        let nodes = linear.stride;
         let mut block = Self {
             state: State::new(&linear),
             stations: Stations::along(&reduction.mesh),
@@ -62,6 +66,7 @@ impl TreadBlock {
             linear,
             face,
             integrator,
+            memory: Memory::new(params, nodes),
             wear_mass: 0.0,
             motion: Kinematics::default(),
             outputs: Outputs::default(),
@@ -82,8 +87,10 @@ impl TreadBlock {
         self.wear_mass = 0.0;
         self.integrator = build::integrator(&self.linear, &self.face, &self.params);
         equilibrium::settle(&self.linear, &self.face, pose, &mut self.state)?;
+        self.memory.reset(&self.params.effect, &mut self.state);
         self.motion = kinematics(&Segment::still(pose), 0.0);
         self.observe();
+        self.memory.settle_sensor(&self.outputs);
         Ok(())
     }
 
@@ -96,6 +103,7 @@ impl TreadBlock {
         let start = self.state.time;
         let (law, density) = (&self.params.wear, self.params.rubber.density);
         let (area, wear_mass) = (&self.face.area, &mut self.wear_mass);
+        let (effects, memory, linear) = (&self.params.effect, &mut self.memory, &self.linear);
         let outcome = self.integrator.advance(
             &self.linear,
             &self.face,
@@ -104,12 +112,23 @@ impl TreadBlock {
             segment,
             &mut |step, stage, state| {
                 *wear_mass += wear_off(law, density, area, step, stage, &mut state.worn);
+                memory.after_step(effects, linear, area, step, stage, state);
             },
         );
         let reached = self.state.time - start;
         self.motion = kinematics(segment, reached);
         self.observe();
+        self.memory.follow_belt(&self.params.effect, reached, &self.outputs);
+        self.memory.show(&self.params.effect, &mut self.outputs);
         outcome
+    }
+
+    /// Lets the block rest under its load for `duration` [s] without the time going on: contacts age
+    /// and cool. A rest before the road starts need not be simulated.
+    pub fn rest(&mut self, duration: f64) {
+        self.memory.rest(&self.params.effect, duration, &mut self.state);
+        self.observe();
+        self.memory.show(&self.params.effect, &mut self.outputs);
     }
 
     /// Time reached [s].
@@ -176,6 +195,7 @@ impl TreadBlock {
     pub fn save(&self, out: &mut Vec<f64>) {
         out.extend([self.wear_mass, self.integrator.last_h()]);
         out.extend(self.motion.to_numbers());
+        self.memory.save(out);
         self.state.save(out);
     }
 
@@ -185,14 +205,18 @@ impl TreadBlock {
         let mut state = self.state.clone();
         let Some((head, rest)) = from.split_at_checked(2) else { return false };
         let Some((motion, rest)) = rest.split_first_chunk() else { return false };
+        let mut memory = self.memory.clone();
+        let Some(rest) = memory.restore(rest) else { return false };
         if !state.restore(rest).is_some_and(<[f64]>::is_empty) {
             return false;
         }
+        self.memory = memory;
         self.wear_mass = head[0];
         self.integrator.resume(head[1]);
         self.motion = Kinematics::from_numbers(motion);
         self.state = state;
         self.observe();
+        self.memory.show(&self.params.effect, &mut self.outputs);
         true
     }
 }
@@ -210,7 +234,7 @@ fn wear_off(
     let mut mass = 0.0;
     for i in 0..worn.len() {
         if traction.pressure[i] > 0.0 {
-            let mu = traction.tangential[i] / traction.normal[i];
+            let mu = traction.tangential[i] / (traction.pressure[i] * area[i]);
             let depth =
                 h * wear::depth_rate(law, density, mu, traction.pressure[i], stage.slip[i]);
             worn[i] += depth;

@@ -98,6 +98,8 @@ impl TreadBlock {
         out.wear_mass = self.wear_mass;
         out.wear_depth_max = self.state.worn.iter().copied().fold(0.0, f64::max);
         out.carriage_z = motion.position[1];
+        out.deflection = self.linear.deflection(&self.state.base);
+        out.deflection_velocity = self.linear.deflection(&self.state.base_velocity);
         self.belt_reaction(&motion);
     }
 
@@ -114,6 +116,9 @@ impl TreadBlock {
             let (along, up) = (cos * x - sin * z, sin * x + cos * z);
             st.compression[i] =
                 -(motion.position[1] + up) - self.face.profile[i] - self.state.worn[i];
+            if let Some(road) = &self.face.road {
+                st.compression[i] += road.height(motion.position[0] + along);
+            }
             st.slip[i] = motion.velocity[0] + cos * vx - sin * vz - motion.omega * up;
             st.lift[i] = motion.velocity[1] + sin * vx + cos * vz + motion.omega * along;
         }
@@ -125,16 +130,14 @@ impl TreadBlock {
     fn belt_reaction(&mut self, motion: &Kinematics) {
         let (linear, state) = (&self.linear, &self.state);
         let [sin, cos] = motion.sin_cos;
-        let mut road = motion.acceleration;
+        let driven = linear.prescribed_acceleration(motion.acceleration);
+        let mut road = driven;
         for (j, dof) in linear.base.iter().enumerate() {
-            road[dof.axis] = state.base_acceleration[j];
+            road[dof.axis] += state.base_acceleration[j];
         }
         let base = [cos * road[0] + sin * road[1], -sin * road[0] + cos * road[1]];
-        let prescribed = {
-            let mut a = motion.acceleration;
-            linear.base.iter().for_each(|dof| a[dof.axis] = 0.0);
-            [cos * a[0] + sin * a[1], -sin * a[0] + cos * a[1]]
-        };
+        let prescribed =
+            [cos * driven[0] + sin * driven[1], -sin * driven[0] + cos * driven[1]];
         let mut rate = [linear.block_mass * base[0], linear.block_mass * base[1]];
         let mut turning = linear.block_mass * 0.5 * linear.node_z * base[0];
         for m in 0..linear.modes() {
@@ -161,9 +164,11 @@ impl TreadBlock {
 
 /// Replaces the prescribed by the actual motion of a free clamped face, but for the acceleration.
 fn free_the_face(linear: &Linear, state: &State, motion: &mut Kinematics) {
+    motion.position = linear.prescribed(motion.position);
+    motion.velocity = linear.prescribed(motion.velocity);
     for (j, dof) in linear.base.iter().enumerate() {
-        motion.position[dof.axis] = state.base[j];
-        motion.velocity[dof.axis] = state.base_velocity[j];
+        motion.position[dof.axis] += state.base[j];
+        motion.velocity[dof.axis] += state.base_velocity[j];
     }
 }
 

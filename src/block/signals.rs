@@ -42,6 +42,10 @@ pub struct Outputs {
     pub wear_depth_max: f64,
     /// Height of the clamped face's middle above the road [m].
     pub carriage_z: f64,
+    /// Tangential deflection of the clamped face against its drive [m], 0 but for a compliant rig.
+    pub deflection: f64,
+    /// Its velocity [m/s].
+    pub deflection_velocity: f64,
 }
 
 impl Default for Outputs {
@@ -63,6 +67,8 @@ impl Default for Outputs {
             wear_mass: 0.0,
             wear_depth_max: 0.0,
             carriage_z: 0.0,
+            deflection: 0.0,
+            deflection_velocity: 0.0,
         }
     }
 }
@@ -148,6 +154,8 @@ pub const OUTPUTS: &[OutputSpec] = &[
     scalar("wear.mass", "kg", MG, 1e-6, "Mass worn off since initialization", |o, _| o.wear_mass),
     scalar("wear.depth_max", "m", UM, 1e-6, "Largest worn depth", |o, _| o.wear_depth_max),
     scalar("carriage.z", "m", MM, 1e-2, "Height of the middle of the clamped face above the road", |o, _| o.carriage_z),
+    scalar("carriage.deflection.x", "m", UM, 1e-5, "Deflection of the clamped face against its drive, forward (effect rig_compliance)", |o, _| o.deflection),
+    scalar("carriage.deflection_velocity.x", "m/s", MM_S, 0.01, "Velocity of that deflection, forward", |o, _| o.deflection_velocity),
 ];
 
 const fn scalar(

@@ -8,12 +8,14 @@ mod belt;
 mod check;
 mod field;
 mod fmu;
+mod identify;
 mod init;
 mod metrics;
 mod output;
 mod plot;
 mod reference;
 mod simulate;
+mod study;
 mod summary;
 
 use std::process::ExitCode;
@@ -61,6 +63,10 @@ enum Command {
     Plot(plot::Arguments),
     /// Print stick-slip frequency, amplitude, mean friction and stick fraction of a sliding run
     Metrics(metrics::Arguments),
+    /// Fit friction, contact and damping to the paper's table of stick-slip frequencies
+    Identify(identify::Arguments),
+    /// Repeat the paper's studies on this model
+    Study(study::Arguments),
     /// Build, describe or check the FMU
     Fmu(fmu::Arguments),
     /// Write the book's reference pages: command line, parameters, run files, signals
@@ -81,6 +87,8 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::run(&arguments),
         Command::Plot(arguments) => plot::run(&arguments),
         Command::Metrics(arguments) => metrics::run(&arguments),
+        Command::Identify(arguments) => identify::run(&arguments),
+        Command::Study(arguments) => study::study(&arguments),
         Command::Fmu(arguments) => fmu::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments, Arguments::command()),
         Command::Completions { shell } => completions(shell),

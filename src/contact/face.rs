@@ -2,6 +2,7 @@
 
 use super::friction::{smoothed_sign, FrictionLaw, Law};
 use super::normal;
+use crate::effects::road_texture::Texture;
 use crate::pack::{Pack, LANES};
 use crate::params::Contact;
 use multiversion::multiversion;
@@ -28,8 +29,14 @@ pub struct Face {
     pub shear_smoothing: f64,
     /// Pull-off pressure [Pa] of full contact (adhesion).
     pub pull_off: f64,
+    /// Pressure over which the adhering share of the face grows [Pa].
+    pub adhesion_pressure: f64,
     /// Pressure per pressure and approach speed [s/m] (contact damping).
     pub damping: f64,
+    /// Pressure per approach speed [Pa s/m] (contact damping).
+    pub viscosity: f64,
+    /// Height of the road, where it is not plane.
+    pub road: Option<Texture>,
 }
 
 /// Forces of the road on the contact nodes and how they change, road frame; padded.
@@ -70,9 +77,15 @@ impl Traction {
 }
 
 impl Face {
-    /// A face of the base model: flat, no adhesion, no contact damping.
-    pub fn new(area: &[f64], friction: Law, contact: &Contact, smoothing_speed: f64) -> Self {
-        let (nodes, size) = (area.len(), padded(area.len()));
+    /// A face of nodes with these areas [m²] and profile [m]; no adhesion, no contact damping.
+    pub fn new(
+        area: &[f64],
+        profile: &[f64],
+        friction: Law,
+        contact: &Contact,
+        smoothing_speed: f64,
+    ) -> Self {
+        let size = padded(area.len());
         let fill = |values: &[f64], rest: f64| {
             let mut out = values.to_vec();
             out.resize(size, rest);
@@ -80,14 +93,17 @@ impl Face {
         };
         Self {
             area: fill(area, 0.0),
-            profile: fill(&vec![0.0; nodes], OUT_OF_REACH),
+            profile: fill(profile, OUT_OF_REACH),
             smoothing_speed,
             friction,
             contact: contact.clone(),
             shear_strength: 0.0,
             shear_smoothing: smoothing_speed,
             pull_off: 0.0,
+            adhesion_pressure: contact.reference_pressure,
             damping: 0.0,
+            viscosity: 0.0,
+            road: None,
         }
     }
 
@@ -156,6 +172,9 @@ impl Face {
     fn pressure(&self, compression: Pack, a: f64, lift: Pack) -> (Pack, Pack) {
         let (p, stiffness) = normal::pressures(&self.contact, compression);
         let by_lift = stiffness * Pack::splat(-a);
+        if self.viscosity > 0.0 {
+            return self.viscous_pressure(compression, a, lift, p, stiffness);
+        }
         if self.damping == 0.0 {
             return (p, by_lift);
         }
@@ -167,13 +186,37 @@ impl Face {
         )
     }
 
-    /// Adds adhesion: shear τ_a and pull p_a over the share 1 − exp(−p/p_r) of real contact.
+    /// Pressure with a damper beside the spring, d (1 − exp(−u/u₀)) u̇, never negative.
+    #[inline(always)]
+    fn viscous_pressure(&self, u: Pack, a: f64, lift: Pack, p: Pack, k: Pack) -> (Pack, Pack) {
+        let (zero, viscosity) = (Pack::splat(0.0), Pack::splat(self.viscosity));
+        let per_depth = Pack::splat(1.0 / self.contact.depth);
+        let left = (-(u.max(zero) * per_depth)).exp();
+        let damper = viscosity * (Pack::splat(1.0) - left);
+        let sum = p - damper * lift;
+        let slope = -(Pack::splat(a) * (k - viscosity * left * per_depth * lift)) - damper;
+        let pressing = |then: Pack| u.if_above(zero, sum.if_above(zero, then, zero), zero);
+        (pressing(sum), pressing(slope))
+    }
+
+    /// Normal stress of a face at rest, pressure less pull-off [Pa], and its derivative [Pa/m].
+    pub fn stress_at_rest(&self, compression: f64) -> (f64, f64) {
+        let (p, stiffness) = normal::pressure(&self.contact, compression);
+        if self.pull_off == 0.0 {
+            return (p, stiffness);
+        }
+        let left = (-p / self.adhesion_pressure).exp();
+        let slope = self.pull_off * left / self.adhesion_pressure;
+        (p - self.pull_off * (1.0 - left), stiffness * (1.0 - slope))
+    }
+
+    /// Adds adhesion: shear τ_a and pull p_a over the adhering share 1 − exp(−p/p_s).
     #[inline(always)]
     fn adhere(&self, p: Pack, p_by_lift: Pack, slip: Pack, t: &mut Nodes) {
         if self.shear_strength == 0.0 && self.pull_off == 0.0 {
             return;
         }
-        let per_pressure = Pack::splat(1.0 / self.contact.reference_pressure);
+        let per_pressure = Pack::splat(1.0 / self.adhesion_pressure);
         let free = (-(p * per_pressure)).exp();
         let share = Pack::splat(1.0) - free;
         let share_by_lift = free * per_pressure * p_by_lift;

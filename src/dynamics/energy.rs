@@ -61,7 +61,6 @@ pub(super) struct Power {
 pub(super) fn power(linear: &Linear, stage: &Stage, motion: &Kinematics) -> Power {
     let mut out = Power::default();
     let [sin, cos] = motion.sin_cos;
-    let free = |axis| linear.is_free(axis);
     for i in 0..linear.nodes {
         let at = linear.stride + i;
         let (fx, fz) = (stage.force[i], stage.force[at]);
@@ -72,10 +71,7 @@ pub(super) fn power(linear: &Linear, stage: &Stage, motion: &Kinematics) -> Powe
         out.friction -= tangential * (own_x + carried_x);
         out.belt -= tangential * carried_x + normal * carried_z;
     }
-    let inertia = to_block(
-        motion,
-        [0, 1].map(|axis| if free(axis) { 0.0 } else { motion.acceleration[axis] }),
-    );
+    let inertia = to_block(motion, linear.prescribed_acceleration(motion.acceleration));
     for (m, w) in stage.w_end.iter().enumerate() {
         out.damping += linear.damping * linear.omega2[m] * w * w;
         out.belt -= linear.coupling_along(m, inertia) * w;

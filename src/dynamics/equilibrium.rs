@@ -32,7 +32,7 @@ pub fn settle(linear: &Linear, face: &Face, pose: Pose, state: &mut State) -> Re
     let mut u = DVector::zeros(size);
     if free.is_some() && pose.load <= 0.0 {
         // Nothing presses: the block hangs where it just touches.
-        store(linear, face, state, &u, height, up, free);
+        store(linear, face, state, &u, [pose.x, height], up, free);
         return Ok(());
     }
     for _ in 0..MAX_ITERATIONS {
@@ -44,8 +44,8 @@ pub fn settle(linear: &Linear, face: &Face, pose: Pose, state: &mut State) -> Re
             jacobian[(size, size)] = 1.0;
         }
         for i in 0..nodes {
-            let c = compression(linear, face, state, &u, height, up, i);
-            let (p, dp) = normal::pressure(&face.contact, c);
+            let c = compression(linear, face, state, &u, [pose.x, height], up, i);
+            let (p, dp) = face.stress_at_rest(c);
             let (force, slope) = (p * face.area[i], dp * face.area[i]);
             let axes = [(i, up[0]), (nodes + i, up[1])];
             for (row, e) in axes {
@@ -71,25 +71,26 @@ pub fn settle(linear: &Linear, face: &Face, pose: Pose, state: &mut State) -> Re
             height += shrink * step[size];
         }
         if largest < 1e-13 {
-            store(linear, face, state, &u, height, up, free);
+            store(linear, face, state, &u, [pose.x, height], up, free);
             return Ok(());
         }
     }
     Err(failure(state.time, u.amax()))
 }
 
-/// Compression of node `i` [m].
+/// Compression of node `i` [m], the middle of the clamped face at `place`.
 fn compression(
     linear: &Linear,
     face: &Face,
     state: &State,
     u: &DVector<f64>,
-    height: f64,
+    place: [f64; 2],
     up: [f64; 2],
     i: usize,
 ) -> f64 {
     let (x, z) = (linear.node_x[i] + u[i], linear.node_z + u[linear.nodes + i]);
-    -(height + up[0] * x + up[1] * z) - face.profile[i] - state.worn[i]
+    let road = face.road.map_or(0.0, |road| road.height(place[0] + up[1] * x - up[0] * z));
+    road - (place[1] + up[0] * x + up[1] * z) - face.profile[i] - state.worn[i]
 }
 
 /// Static compliance of the contact degrees of freedom [m/N].
@@ -122,7 +123,7 @@ fn store(
     face: &Face,
     state: &mut State,
     u: &DVector<f64>,
-    height: f64,
+    place: [f64; 2],
     up: [f64; 2],
     free: Option<usize>,
 ) {
@@ -130,8 +131,8 @@ fn store(
     let stride = linear.stride;
     let mut force = vec![0.0; 2 * stride];
     for i in 0..nodes {
-        let c = compression(linear, face, state, u, height, up, i);
-        let f = normal::pressure(&face.contact, c).0 * face.area[i];
+        let c = compression(linear, face, state, u, place, up, i);
+        let f = face.stress_at_rest(c).0 * face.area[i];
         force[i] = f * up[0];
         force[stride + i] = f * up[1];
     }
@@ -145,7 +146,7 @@ fn store(
         state.y[b * modes..(b + 1) * modes].copy_from_slice(&state.z);
     }
     if let Some(j) = free {
-        state.base[j] = height;
+        state.base[j] = place[1];
     }
 }
 

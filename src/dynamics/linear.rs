@@ -1,29 +1,22 @@
 //! The linear part of the block in SI units: decoupled modes of the clamped block and its carriage.
 
 use crate::contact::face::padded;
+use crate::effects::viscoelastic_modulus::Branch;
 use crate::params::{NormalDrive, Params};
 use crate::reduction::Reduction;
 
-/// A direction in which the clamped face may move freely, with what holds it.
+/// A direction in which the clamped face may move, with what holds it: normal to the road its
+/// position itself, along the road its deflection from the prescribed motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseDof {
     /// 0: along the road, 1: normal to it.
     pub axis: usize,
     /// Mass [kg] that moves with the clamped face.
     pub mass: f64,
-    /// Damping [N s/m] to the prescribed motion.
+    /// Damping [N s/m].
     pub damping: f64,
-    /// Stiffness [N/m] to the prescribed motion.
+    /// Stiffness [N/m] towards 0.
     pub stiffness: f64,
-}
-
-/// One branch of a generalised Maxwell model beside the elastic modulus.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Branch {
-    /// Modulus of the branch over Young's modulus [-].
-    pub share: f64,
-    /// Relaxation time [s].
-    pub time: f64,
 }
 
 /// Vectors per mode and per contact node are padded to full packs: modes that couple to nothing,
@@ -54,6 +47,9 @@ pub struct Linear {
     pub node_z: f64,
     /// Directions in which the clamped face is free.
     pub base: Vec<BaseDof>,
+    /// Does the road move under a block that rests in the laboratory, so that the prescribed
+    /// tangential motion has no inertia?
+    pub road_moves: bool,
     /// Maxwell branches.
     pub branches: Vec<Branch>,
 }
@@ -91,6 +87,10 @@ impl Linear {
                 stiffness: 0.0,
             });
         }
+        if let Some(rig) = params.effect.rig_compliance.oscillator(params.carriage.mass) {
+            let (mass, damping, stiffness) = (rig.mass, rig.damping, rig.stiffness);
+            base.push(BaseDof { axis: 0, mass, damping, stiffness });
+        }
         Self {
             omega2: fill(
                 reduction.lambda.iter().map(|l| l * e_over_rho).collect(),
@@ -109,7 +109,8 @@ impl Linear {
             node_x: fill(reduction.mesh.x.clone(), stride, 0.0),
             node_z: -params.block.height,
             base,
-            branches: Vec::new(),
+            road_moves: params.drive.normal == NormalDrive::Load,
+            branches: params.effect.viscoelastic_modulus.branches(),
         }
     }
 
@@ -118,9 +119,24 @@ impl Linear {
         self.omega2.len()
     }
 
-    /// Is the clamped face free along `axis`?
-    pub fn is_free(&self, axis: usize) -> bool {
-        self.base.iter().any(|b| b.axis == axis)
+    /// The parts of a road vector that are prescribed: none normal to the road where the clamped face
+    /// is free; along the road always, since its freedom there is a deflection.
+    pub fn prescribed(&self, mut vector: [f64; 2]) -> [f64; 2] {
+        for dof in self.base.iter().filter(|dof| dof.axis == 1) {
+            vector[dof.axis] = 0.0;
+        }
+        vector
+    }
+
+    /// Prescribed acceleration that the block's inertia feels [m/s²].
+    pub fn prescribed_acceleration(&self, acceleration: [f64; 2]) -> [f64; 2] {
+        let [x, z] = self.prescribed(acceleration);
+        [if self.road_moves { 0.0 } else { x }, z]
+    }
+
+    /// Tangential deflection of the clamped face in the coordinates `base`; also of velocities.
+    pub fn deflection(&self, base: &[f64; 2]) -> f64 {
+        self.base.iter().zip(base).filter(|(dof, _)| dof.axis == 0).map(|(_, b)| b).sum()
     }
 
     /// Coupling of mode `m` to a unit acceleration of the clamped face along a direction that is

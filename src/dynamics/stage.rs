@@ -127,7 +127,8 @@ impl Stage {
         motion: &Kinematics,
     ) -> [f64; 2] {
         let (modes, a) = (linear.modes(), matrices.a);
-        let acceleration = to_block(motion, prescribed(linear, motion.acceleration));
+        let driven = linear.prescribed_acceleration(motion.acceleration);
+        let acceleration = to_block(motion, driven);
         for m in 0..modes {
             self.rhs[m] = self.w[m]
                 - matrices.a_omega2[m] * self.z[m]
@@ -147,16 +148,16 @@ impl Stage {
         dense::add_columns(&mut self.v_free, &linear.by_mode, &self.scratch);
         let mut h = [0.0; 2];
         for (j, dof) in linear.base.iter().enumerate() {
-            let (reference, rate) = match dof.axis {
-                0 => (motion.position[0], motion.velocity[0]),
-                _ => (0.0, 0.0),
+            // The drive carries the mass of a deflection along.
+            let external = match dof.axis {
+                1 => -motion.load,
+                _ => -(linear.block_mass + dof.mass) * driven[0],
             };
-            let external = if dof.axis == 1 { -motion.load } else { 0.0 };
             let velocity = self.base_velocity[j];
-            let stretch = self.base[j] + a * velocity - reference;
+            let stretch = self.base[j] + a * velocity;
             let coupling = &matrices.base_coupling[j * modes..(j + 1) * modes];
             let inertia: f64 = dense::dot(coupling, &self.scratch) - dense::dot(coupling, &self.w);
-            h[j] = a * (external - dof.damping * (velocity - rate) - dof.stiffness * stretch)
+            h[j] = a * (external - dof.damping * velocity - dof.stiffness * stretch)
                 - inertia;
         }
         self.add_face_velocity(linear, matrices, motion, h);
@@ -200,7 +201,7 @@ impl Stage {
                 height = self.base[j];
             }
         }
-        let velocity = prescribed(linear, motion.velocity);
+        let velocity = linear.prescribed(motion.velocity);
         let (ux, uz) = self.u.split_at(stride);
         let (vx, vz) = self.v.split_at(stride);
         let (carried_x, carried_z) = self.carried.split_at_mut(stride);
@@ -305,13 +306,6 @@ impl Stage {
 /// it converges quadratically, so the error left is about the square of it.
 const CHANGE_TOLERANCE: f64 = 1e-3;
 
-/// The parts of a vector that are prescribed: zero along the free directions.
-fn prescribed(linear: &Linear, mut vector: [f64; 2]) -> [f64; 2] {
-    for dof in &linear.base {
-        vector[dof.axis] = 0.0;
-    }
-    vector
-}
 
 fn times_2x2(matrix: &[f64; 4], [x, y]: [f64; 2]) -> [f64; 2] {
     [matrix[0] * x + matrix[1] * y, matrix[2] * x + matrix[3] * y]

@@ -114,6 +114,26 @@ impl TrBdf2 {
         both_stages(self, linear, face, state, matrices, &ends, h)
     }
 
+    /// Takes the height of the road off the gaps, where the nodes will stand at the end of the step.
+    fn raise_road(
+        &mut self,
+        linear: &Linear,
+        face: &Face,
+        state: &State,
+        end: &Kinematics,
+        h: f64,
+    ) {
+        let Some(road) = &face.road else { return };
+        let stride = linear.stride;
+        let [sin, cos] = end.sin_cos;
+        let middle = end.position[0] + linear.deflection(&state.base);
+        for (i, gap) in self.gap.iter_mut().enumerate() {
+            let x = linear.node_x[i] + self.u[i] + h * self.v[i];
+            let z = linear.node_z + self.u[stride + i];
+            *gap -= road.height(middle + cos * x - sin * z);
+        }
+    }
+
     /// Makes the trial the state.
     pub fn accept(&mut self, state: &mut State) {
         let trial = &mut self.trial;
@@ -345,6 +365,7 @@ fn both_stages(
     for ((gap, profile), worn) in step.gap.iter_mut().zip(&face.profile).zip(&state.worn) {
         *gap = profile + worn;
     }
+    step.raise_road(linear, face, state, &ends[2], h);
     step.first_stage(linear, face, state, matrices, ends)?;
     step.second_stage(linear, face, state, matrices, ends, h)?;
     step.write_trial(linear, &ends[2]);
@@ -353,11 +374,7 @@ fn both_stages(
 
 /// Prescribed acceleration of the clamped face in the block's frame [m/s²].
 fn inertia(linear: &Linear, motion: &Kinematics) -> [f64; 2] {
-    let free = |axis: usize| linear.is_free(axis);
-    to_block(
-        motion,
-        [0, 1].map(|axis| if free(axis) { 0.0 } else { motion.acceleration[axis] }),
-    )
+    to_block(motion, linear.prescribed_acceleration(motion.acceleration))
 }
 
 /// Velocity of the free clamped face in the block's frame [m/s].

@@ -1,0 +1,175 @@
+//! `tread identify`: fit friction, contact and damping to Table 1 of the paper.
+
+use std::path::{Path, PathBuf};
+
+use super::output::{self, Done, Stop};
+use crate::error::Fault;
+use crate::params::{load, Params};
+use crate::study::identify::run::{identify, Progress, Task};
+use crate::study::identify::space;
+use crate::study::paper::{Column, TABLE_1};
+use crate::study::slides::Reductions;
+
+const EXAMPLES: &str = "\
+Examples:
+  tread identify --out out/identify
+  tread identify --columns h10l15,h6l45 --out out/cross
+  tread identify --law rational --evaluations 4000 --out out/rational
+  tread identify --start compounds/paper.toml --evaluations 0 --out out/polish";
+
+/// What was typed.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub struct Arguments {
+    /// Folder for the parameter set and the report
+    #[arg(long)]
+    out: PathBuf,
+    /// Columns of Table 1 to fit; all if not given
+    #[arg(long, value_delimiter = ',', value_name = "NAME")]
+    columns: Vec<String>,
+    /// Friction law; that of the start if not given
+    #[arg(long)]
+    law: Option<String>,
+    /// Parameters to fit; all unknowns of the law if not given
+    #[arg(long, value_delimiter = ',', value_name = "NAME")]
+    free: Vec<String>,
+    /// Parameter file to start from
+    #[arg(long)]
+    start: Option<PathBuf>,
+    /// Set a parameter of the start; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<String>,
+    /// Simulated tables in the global search; 0: local search only
+    #[arg(long, default_value_t = 1500)]
+    evaluations: usize,
+    /// Spread of the global search at its start, as a share of the ranges
+    #[arg(long, default_value_t = 0.15)]
+    spread: f64,
+    /// Candidates per generation of the global search; 0: by the number of unknowns
+    #[arg(long, default_value_t = 0)]
+    population: usize,
+    /// Rounds of the local search
+    #[arg(long, default_value_t = 8)]
+    rounds: usize,
+    /// Solve the local search as coarsely as the global one
+    #[arg(long)]
+    coarse: bool,
+    /// Seed of the global search
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads; all cores if not given
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+/// Runs it.
+pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
+    let task = task(arguments)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.unwrap_or(0))
+        .build()
+        .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
+    let best = arguments.out.join("best.toml");
+    let found = pool.install(|| {
+        identify(&task, &Reductions::default(), |progress| {
+            eprintln!(
+                "{} {:6} tables, cost {:.4}",
+                progress.stage, progress.evaluations, progress.cost
+            );
+            keep(&best, progress);
+        })
+    })?;
+    write(&best, &found.params)?;
+    Ok(Done::Fine)
+}
+
+/// Keeps the best so far, so that an interrupted search loses nothing; the final set is written
+/// again, with errors told.
+fn keep(path: &Path, progress: &Progress<'_>) {
+    if write(path, progress.best).is_err() {
+        eprintln!("cannot write {}", path.display());
+    }
+}
+
+fn write(path: &Path, params: &Params) -> Result<(), Stop> {
+    output::to(Some(path), load::to_toml(params).as_bytes())
+}
+
+fn task(arguments: &Arguments) -> Result<Task, Fault> {
+    let mut start = match &arguments.start {
+        Some(path) => {
+            let text = std::fs::read_to_string(path).map_err(|e| Fault::File {
+                path: path.display().to_string(),
+                reason: e.to_string(),
+            })?;
+            load::from_toml(&text)?
+        }
+        None => start(),
+    };
+    let mut problems = Vec::new();
+    for assignment in &arguments.set {
+        problems.extend(load::assign_text(assignment, &mut start));
+    }
+    if let Some(law) = &arguments.law {
+        problems.extend(load::assign_text(&format!("friction.form={law}"), &mut start));
+    }
+    let mut unknowns = space::unknowns(start.friction.form);
+    if !arguments.free.is_empty() {
+        match space::select(&unknowns, &arguments.free) {
+            Ok(selected) => unknowns = selected,
+            Err(more) => problems.extend(more),
+        }
+    }
+    let columns = columns(&arguments.columns, &mut problems);
+    if !problems.is_empty() {
+        return Err(Fault::Invalid(problems));
+    }
+    Ok(Task {
+        start,
+        unknowns,
+        columns,
+        evaluations: arguments.evaluations,
+        spread: arguments.spread,
+        population: arguments.population,
+        rounds: arguments.rounds,
+        coarse: arguments.coarse,
+        seed: arguments.seed,
+    })
+}
+
+/// Columns by name.
+fn columns(names: &[String], problems: &mut Vec<crate::error::Problem>) -> Vec<Column> {
+    if names.is_empty() {
+        return TABLE_1.to_vec();
+    }
+    let mut out = Vec::new();
+    for name in names {
+        match TABLE_1.iter().find(|c| c.name == name) {
+            Some(column) => out.push(*column),
+            None => problems.push(crate::error::Problem::new(
+                "--columns",
+                name.as_str(),
+                TABLE_1.map(|c| c.name).join(", "),
+                "correct the name of the column",
+            )),
+        }
+    }
+    out
+}
+
+/// A start from which a coarse search reached a median error of 6 %.
+fn start() -> Params {
+    let mut params = Params::default();
+    params.rubber.stiffness_damping = 6.7e-5;
+    params.friction.mu_inf = 0.32;
+    params.friction.mu_drop = 0.87;
+    params.friction.decay_speed = 2.0;
+    params.friction.decay_exponent = 0.60;
+    params.friction.rational_exponent = 0.8;
+    params.friction.bell_steepness = 0.5;
+    params.friction.smoothing_speed = 2.1e-3;
+    params.friction.pressure_exponent = -0.01;
+    params.contact.reference_pressure = 30e3;
+    params.contact.depth = 25e-6;
+    params
+}

@@ -1,0 +1,79 @@
+//! `tread study`: the paper's studies on our own model.
+
+use std::path::{Path, PathBuf};
+
+use super::output::{self, Done, Stop};
+use crate::error::Fault;
+use crate::params::{load, Params};
+use crate::study::identify::objective::Fineness;
+use crate::study::report::{html, Study};
+use crate::study;
+
+const EXAMPLES: &str = "\
+Examples:
+  tread study table-1 --out out/paper
+  tread study all
+  tread study fig-6 --compound my-rubber.toml --out out/mine";
+
+/// What was typed.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = EXAMPLES)]
+pub struct Arguments {
+    /// Study to run: table-1, fig-4 ... or all
+    study: String,
+    /// Folder for CSV, SVG and HTML
+    #[arg(long, default_value = "out/paper")]
+    out: PathBuf,
+    /// Parameter file; the compound identified from the paper if not given
+    #[arg(long)]
+    compound: Option<PathBuf>,
+    /// Solve coarsely: faster, frequencies within about 2 %
+    #[arg(long)]
+    coarse: bool,
+    /// Threads; all cores if not given
+    #[arg(long)]
+    threads: Option<usize>,
+}
+
+/// Runs it.
+pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
+    let params = compound(arguments.compound.as_deref())?;
+    let fineness = if arguments.coarse { Fineness::COARSE } else { Fineness::FINE };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.unwrap_or(0))
+        .build()
+        .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
+    let studies = pool.install(|| study::run(&arguments.study, &params, &fineness))?;
+    for study in &studies {
+        write(study, &arguments.out)?;
+    }
+    if arguments.study == "all" {
+        let page = html(&studies, &load::to_toml(&params));
+        output::to(Some(&arguments.out.join("index.html")), page.as_bytes())?;
+        eprintln!("{}", arguments.out.join("index.html").display());
+    }
+    Ok(Done::Fine)
+}
+
+/// Writes tables and pictures, tells notes and verdicts.
+fn write(study: &Study, out: &Path) -> Result<(), Stop> {
+    for (name, text) in study.tables.iter().chain(&study.pictures) {
+        output::to(Some(&out.join(name)), text.as_bytes())?;
+    }
+    eprintln!("{}: {}\n{}", study.name, study.title, study.notes);
+    for verdict in &study.verdicts {
+        eprintln!("  {}", verdict.line());
+    }
+    Ok(())
+}
+
+/// The compound identified from the paper: the default of the studies.
+const PAPER: &str = include_str!("../../compounds/paper.toml");
+
+/// The compound of the file, or the one identified from the paper.
+fn compound(path: Option<&Path>) -> Result<Params, Fault> {
+    let Some(path) = path else { return load::from_toml(PAPER) };
+    let text = std::fs::read_to_string(path)
+        .map_err(|e| Fault::File { path: path.display().to_string(), reason: e.to_string() })?;
+    load::from_toml(&text)
+}

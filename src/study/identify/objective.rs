@@ -1,0 +1,211 @@
+//! How far a set of parameters is from Table 1.
+
+use rayon::prelude::*;
+
+use super::space::{apply, Unknown};
+use crate::error::Fault;
+use crate::params::Params;
+use crate::study::paper::{Cell, Column, PRESSURE, SPEEDS};
+use crate::study::slides::{observe, Observed, Point, Reductions};
+
+/// How finely the runs of an identification are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fineness {
+    /// Elements along a face of 15 mm and of 45 mm.
+    pub along: [usize; 2],
+    /// Elements over the height.
+    pub up: usize,
+    /// Largest internal step [s].
+    pub max_step: f64,
+    /// Tolerance of the integrator.
+    pub tolerance: f64,
+    /// Frequency bound [Hz].
+    pub bound: f64,
+    /// Distance of rows [s].
+    pub step: f64,
+}
+
+impl Fineness {
+    /// For the global search: frequencies within about 2 % of the converged ones.
+    pub const COARSE: Self =
+        Self { along: [5, 8], up: 4, max_step: 2e-5, tolerance: 3e-3, bound: 8e3, step: 4e-5 };
+    /// For the last steps and for Table 1.
+    pub const FINE: Self =
+        Self { along: [6, 18], up: 5, max_step: 1e-5, tolerance: 1e-3, bound: 20e3, step: 2e-5 };
+
+    /// Sets the solver of `params` for its geometry.
+    pub fn apply(&self, params: &mut Params) {
+        let long = params.block.length > 0.030;
+        params.solver.elements_along = self.along[usize::from(long)];
+        params.solver.elements_up = self.up;
+        params.solver.max_step = self.max_step;
+        params.solver.tolerance = self.tolerance;
+        params.solver.frequency_bound = self.bound;
+    }
+}
+
+/// One cell: where it is, what the paper says, what the model does.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    /// Column of Table 1.
+    pub column: Column,
+    /// Row of Table 1.
+    pub row: usize,
+    /// The model's run; `None` if the model could not do it.
+    pub observed: Option<Observed>,
+}
+
+impl Compared {
+    /// The paper's cell.
+    pub fn cell(&self) -> Cell {
+        self.column.cells[self.row]
+    }
+
+    /// Model frequency [Hz], 0 where silent.
+    pub fn hz(&self) -> f64 {
+        self.observed.as_ref().map_or(0.0, |o| o.metrics.frequency)
+    }
+
+    /// Relative error of the frequency where both oscillate.
+    pub fn error(&self) -> Option<f64> {
+        match self.cell() {
+            Cell::Hz(paper) if self.hz() > 0.0 => Some(self.hz() / paper - 1.0),
+            _ => None,
+        }
+    }
+
+    /// Does the model oscillate where the paper does and keep silent where it does?
+    pub fn agrees(&self) -> bool {
+        (self.hz() > 0.0) == (self.cell() != Cell::Silent)
+    }
+
+    /// Residual: the logarithm of the frequency ratio, or a penalty that grows with how clearly the
+    /// block is silent (or loud) where it should not be.
+    pub fn residual(&self) -> f64 {
+        let Some(observed) = &self.observed else { return 1.0 };
+        let (hz, swing) = (self.hz(), observed.metrics.velocity_amplitude);
+        let death = (-observed.growth / 1000.0).clamp(0.0, 4.0);
+        match self.cell() {
+            Cell::Hz(paper) if hz > 0.0 => snap_ratio(hz, paper).clamp(-1.0, 1.0),
+            Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => 0.4 + 0.2 * death,
+            Cell::Between(low, high) => (hz / low).ln().min(0.0) + (hz / high).ln().max(0.0),
+            _ if hz <= 0.0 => 0.0,
+            _ => 0.2 + 0.15 * (swing / SPEEDS[self.row]).min(4.0),
+        }
+    }
+}
+
+/// Logarithm of the frequency ratio. Where every second or third snap differs a little, the period
+/// counts that many snaps: then the rate of snaps is compared, at a small price.
+fn snap_ratio(hz: f64, paper: f64) -> f64 {
+    let ratio = |snaps: f64| (snaps * hz / paper).ln();
+    let plain = ratio(1.0);
+    let several = [2.0, 3.0, 4.0].map(ratio);
+    let nearest = several.into_iter().min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(plain);
+    if nearest.abs() + 0.1 < plain.abs() {
+        nearest + 0.05_f64.copysign(nearest)
+    } else {
+        plain
+    }
+}
+
+/// Duration of the run of a cell [s]: the start settles, then eight periods or more are seen.
+fn duration(cell: Cell) -> f64 {
+    match cell {
+        Cell::Hz(hz) => (5e-3 + 9.0 / hz).max(10e-3),
+        Cell::Between(..) => 15e-3,
+        Cell::Silent => 20e-3,
+    }
+}
+
+/// Runs all cells of `columns`.
+pub fn compare(
+    base: &Params,
+    columns: &[Column],
+    fineness: &Fineness,
+    lengthen: f64,
+    reductions: &Reductions,
+) -> Vec<Compared> {
+    let mut cells: Vec<(Column, usize)> =
+        columns.iter().flat_map(|c| (0..SPEEDS.len()).map(move |row| (*c, row))).collect();
+    // The dearest first, so that no core waits for a last long run.
+    cells.sort_by(|a, b| b.0.length.total_cmp(&a.0.length));
+    cells
+        .into_par_iter()
+        .map(|(column, row)| {
+            let mut params = base.clone();
+            params.block.height = column.height;
+            params.block.length = column.length;
+            fineness.apply(&mut params);
+            let point = Point {
+                speed: SPEEDS[row],
+                pressure: PRESSURE,
+                duration: lengthen * duration(column.cells[row]),
+                step: fineness.step,
+            };
+            Compared { column, row, observed: observe(&params, reductions, point).ok() }
+        })
+        .collect()
+}
+
+/// E/ρ [m²/s²] at which the eigenfrequencies of the free blocks fit Table 1 best.
+///
+/// # Errors
+/// What stops the reduction.
+pub fn modulus_over_density(
+    base: &Params,
+    columns: &[Column],
+    reductions: &Reductions,
+) -> Result<f64, Fault> {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for column in columns {
+        let Some(f0) = column.f0 else { continue };
+        let mut params = base.clone();
+        params.block.height = column.height;
+        params.block.length = column.length;
+        Fineness::FINE.apply(&mut params);
+        let lambda = reductions.of(&params)?.lambda[0];
+        sum += ((f0 * std::f64::consts::TAU).powi(2) / lambda).ln();
+        count += 1.0;
+    }
+    Ok((sum / count as f64).exp())
+}
+
+/// The problem that a search solves: residuals of the cells over the unknowns.
+pub struct Problem<'a> {
+    /// What is not unknown.
+    pub base: &'a Params,
+    /// Unknowns.
+    pub unknowns: &'a [Unknown],
+    /// Columns to fit.
+    pub columns: &'a [Column],
+    /// How finely.
+    pub fineness: Fineness,
+    /// Reductions.
+    pub reductions: &'a Reductions,
+}
+
+impl Problem<'_> {
+    /// Parameters at `x`.
+    pub fn params(&self, x: &[f64]) -> Params {
+        let mut params = self.base.clone();
+        apply(self.unknowns, x, &mut params);
+        params
+    }
+
+    /// Residuals at `x`, cell by cell.
+    pub fn residuals(&self, x: &[f64]) -> Vec<f64> {
+        compare(&self.params(x), self.columns, &self.fineness, 1.0, self.reductions)
+            .iter()
+            .map(Compared::residual)
+            .collect()
+    }
+
+    /// Cost of residuals: pseudo-Huber at 5 %, so that no single cell rules, and a wall for leaving
+    /// the unit cube.
+    pub fn cost(residuals: &[f64], x: &[f64]) -> f64 {
+        let fit: f64 = residuals.iter().map(|r| (1.0 + (r / 0.05).powi(2)).sqrt() - 1.0).sum();
+        let outside: f64 = x.iter().map(|x| (x - x.clamp(0.0, 1.0)).powi(2)).sum();
+        fit + 1e3 * outside
+    }
+}

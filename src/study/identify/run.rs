@@ -1,0 +1,124 @@
+//! The identification from start to end: modulus, global search, local search.
+
+use super::cma::Cma;
+use super::gauss_newton::{improve, Local};
+use super::objective::{modulus_over_density, Fineness, Problem};
+use super::space::{places, Unknown};
+use crate::error::Fault;
+use crate::params::Params;
+use crate::study::paper::{Column, TABLE_1};
+use crate::study::slides::Reductions;
+
+/// What an identification is asked for.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// Start, and values of what is not unknown.
+    pub start: Params,
+    /// Unknowns.
+    pub unknowns: Vec<Unknown>,
+    /// Columns of Table 1 to fit.
+    pub columns: Vec<Column>,
+    /// Simulated tables in the global search; 0: local only.
+    pub evaluations: usize,
+    /// First standard deviation of the global search, in unit intervals.
+    pub spread: f64,
+    /// Candidates per generation; 0: by the number of unknowns.
+    pub population: usize,
+    /// Rounds of the local search.
+    pub rounds: usize,
+    /// Solve the local search coarsely, too.
+    pub coarse: bool,
+    /// Seed of the global search.
+    pub seed: u64,
+}
+
+/// A step of the identification as it is told.
+#[derive(Clone, Debug)]
+pub struct Progress<'a> {
+    /// `global` or `local`.
+    pub stage: &'static str,
+    /// Tables simulated so far in the global search.
+    pub evaluations: usize,
+    /// Best cost so far.
+    pub cost: f64,
+    /// Parameters of the best.
+    pub best: &'a Params,
+}
+
+/// What it found.
+#[derive(Clone, Debug)]
+pub struct Identified {
+    /// Best parameters.
+    pub params: Params,
+    /// End of the local search.
+    pub local: Local,
+    /// Cost.
+    pub cost: f64,
+}
+
+/// Identifies.
+///
+/// # Errors
+/// What stops the reduction of a geometry.
+pub fn identify(
+    task: &Task,
+    reductions: &Reductions,
+    mut told: impl FnMut(&Progress<'_>),
+) -> Result<Identified, Fault> {
+    let mut base = task.start.clone();
+    base.wear.coefficient = 0.0;
+    base.rubber.young_modulus =
+        base.rubber.density * modulus_over_density(&base, &TABLE_1, reductions)?;
+    let problem = |fineness| Problem {
+        base: &base,
+        unknowns: &task.unknowns,
+        columns: &task.columns,
+        fineness,
+        reductions,
+    };
+    let mut x = places(&task.unknowns, &base);
+    if task.evaluations > 0 {
+        x = global(task, &problem(Fineness::COARSE), x, &mut told);
+    }
+    let fine = problem(if task.coarse { Fineness::COARSE } else { Fineness::FINE });
+    let local = improve(&fine, x, task.rounds, |x, cost| {
+        let best = &fine.params(x);
+        told(&Progress { stage: "local", evaluations: task.evaluations, cost, best });
+    });
+    let mut params = fine.params(&local.x);
+    params.wear = task.start.wear.clone();
+    let cost = Problem::cost(&local.residuals, &local.x);
+    Ok(Identified { params, local, cost })
+}
+
+/// Covariance matrix adaptation from `start`; returns the best place seen.
+fn global(
+    task: &Task,
+    problem: &Problem<'_>,
+    start: Vec<f64>,
+    told: &mut impl FnMut(&Progress<'_>),
+) -> Vec<f64> {
+    let population = match task.population {
+        0 => 4 + (3.0 * (start.len() as f64).ln()) as usize,
+        given => given,
+    };
+    let mut search = Cma::new(&start, task.spread, population, task.seed);
+    let mut best = start.clone();
+    let mut cost = Problem::cost(&problem.residuals(&start), &start);
+    let mut evaluations = 1;
+    while evaluations < task.evaluations && search.sigma() > 1e-3 {
+        let candidates = search.ask();
+        let costs: Vec<f64> =
+            candidates.iter().map(|x| Problem::cost(&problem.residuals(x), x)).collect();
+        evaluations += candidates.len();
+        for (candidate, c) in candidates.iter().zip(&costs) {
+            if *c < cost {
+                (best, cost) = (candidate.iter().map(|x| x.clamp(0.0, 1.0)).collect(), *c);
+            }
+        }
+        search.tell(&candidates, &costs);
+        let params = &problem.params(&best);
+        told(&Progress { stage: "global", evaluations, cost, best: params });
+    }
+    best
+}

@@ -1,0 +1,46 @@
+//! The paper's studies on the project's own model, side by side with the paper's numbers.
+
+pub mod fig_4;
+pub mod identify;
+pub mod paper;
+pub mod plot;
+pub mod report;
+pub mod slides;
+pub mod table_one;
+pub mod variation;
+pub mod vibration;
+
+use crate::error::{Fault, Problem};
+use crate::params::Params;
+use identify::objective::Fineness;
+use report::Study;
+
+type Runner = fn(&Params, &Fineness) -> Result<Study, Fault>;
+
+/// The studies in the order of the paper.
+const STUDIES: &[(&str, Runner)] = &[
+    ("fig-4", fig_4::fig_4),
+    ("fig-5", vibration::fig_5),
+    ("fig-6", vibration::fig_6),
+    ("fig-7", vibration::fig_7),
+    ("table-1", table_one::table_1),
+];
+
+/// Runs the study of that name, or `all`.
+///
+/// # Errors
+/// What stops a block; an unknown name.
+pub fn run(name: &str, compound: &Params, fineness: &Fineness) -> Result<Vec<Study>, Fault> {
+    let wanted: Vec<_> =
+        STUDIES.iter().filter(|(study, _)| name == "all" || *study == name).collect();
+    if wanted.is_empty() {
+        let names: Vec<&str> = STUDIES.iter().map(|s| s.0).collect();
+        return Err(Fault::one(Problem::new(
+            "study",
+            name,
+            format!("{}, all", names.join(", ")),
+            "name one of them",
+        )));
+    }
+    wanted.into_iter().map(|(_, study)| study(compound, fineness)).collect()
+}

@@ -1,0 +1,136 @@
+//! Sliding runs of many operating points, with the reduction of each geometry made once.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::block::{Shape, TreadBlock};
+use crate::error::Fault;
+use crate::metrics::{self, stick_slip, Recorder, StickSlip};
+use crate::params::Params;
+use crate::reduction::Reduction;
+use crate::scenario::{self, Inputs, Plan, Scenario, Slide};
+
+/// Reductions made so far, one per [`Shape`].
+#[derive(Debug, Default)]
+pub struct Reductions {
+    made: Mutex<Vec<(Shape, Arc<Reduction>)>>,
+}
+
+impl Reductions {
+    /// The reduction for `params`, made at the first call for its shape.
+    ///
+    /// # Errors
+    /// What stops the reduction.
+    pub fn of(&self, params: &Params) -> Result<Arc<Reduction>, Fault> {
+        let shape = Shape::of(params);
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, reduction)) = made.iter().find(|(s, _)| *s == shape) {
+            return Ok(reduction.clone());
+        }
+        let reduction = Arc::new(shape.reduce()?);
+        made.push((shape, reduction.clone()));
+        Ok(reduction)
+    }
+}
+
+/// What a sliding run is made of beside the block's parameters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Road speed [m/s].
+    pub speed: f64,
+    /// Mean pressure [Pa].
+    pub pressure: f64,
+    /// Length of the run [s].
+    pub duration: f64,
+    /// Distance of the rows [s].
+    pub step: f64,
+}
+
+/// A run and what it amounts to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observed {
+    /// Metrics of the settled part.
+    pub metrics: StickSlip,
+    /// Rate at which the vibration grows (or dies, negative) over the run [1/s].
+    pub growth: f64,
+}
+
+/// Silence is certain, and the run over, when the velocity swings by less than this share of the
+/// road speed over [`WINDOW`].
+const DEAD: f64 = 2e-3;
+/// Time over which amplitudes are taken [s]; one period of the slowest stick-slip of the paper.
+const WINDOW: f64 = 2e-3;
+
+/// Slides a block; ends early when all vibration has died.
+///
+/// # Errors
+/// What stops the block.
+pub fn observe(params: &Params, reductions: &Reductions, point: Point) -> Result<Observed, Fault> {
+    let load = point.pressure * params.block.length * params.block.width;
+    let scenario = Scenario::Slide(Slide::constant(point.speed, load));
+    let mut block = TreadBlock::with_reduction(params, reductions.of(params)?)?;
+    let mut recorder = Recorder::default();
+    let mut swings = Swings::new(point.step);
+    let plan = Plan { step: point.step, duration: point.duration, inputs: Inputs::Exact };
+    let outcome = scenario::run(&mut block, &scenario, &plan, |time, block| {
+        let outputs = block.outputs();
+        recorder.push(time, outputs);
+        swings.push(outputs.run_in_velocity[0]);
+        if time > 2.0 * WINDOW && swings.last() < DEAD * point.speed.abs() {
+            return Err(died());
+        }
+        Ok(())
+    });
+    match outcome {
+        Err(fault) if fault != died() => return Err(fault),
+        _ => {}
+    }
+    let mut metrics = stick_slip(&recorder.trace(), point.speed);
+    if outcome.is_err() {
+        metrics.frequency = 0.0;
+    }
+    Ok(Observed { metrics, growth: swings.growth() })
+}
+
+/// Ends a run whose vibration has died; never leaves this file.
+fn died() -> Fault {
+    Fault::File { path: String::new(), reason: "vibration died".to_string() }
+}
+
+/// Peak-to-peak velocity window by window.
+struct Swings {
+    length: usize,
+    current: Vec<f64>,
+    window: f64,
+    swings: Vec<f64>,
+}
+
+impl Swings {
+    fn new(step: f64) -> Self {
+        let length = (WINDOW / step).round().max(4.0) as usize;
+        Self { length, current: Vec::with_capacity(length), window: WINDOW, swings: Vec::new() }
+    }
+
+    fn push(&mut self, velocity: f64) {
+        self.current.push(velocity);
+        if self.current.len() == self.length {
+            self.swings.push(metrics::peak_to_peak(&self.current));
+            self.current.clear();
+        }
+    }
+
+    fn last(&self) -> f64 {
+        self.swings.last().copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// Rate [1/s] of the logarithm of the swing, from the second window to the last.
+    fn growth(&self) -> f64 {
+        let (Some(first), Some(last)) = (self.swings.get(1), self.swings.last()) else {
+            return 0.0;
+        };
+        let count = self.swings.len() - 2;
+        if count == 0 || *first <= 0.0 || *last <= 0.0 {
+            return 0.0;
+        }
+        (last / first).ln() / (count as f64 * self.window)
+    }
+}

@@ -1,0 +1,223 @@
+//! Figures 5 to 7: what changes the vibrations of a sliding block.
+
+use super::identify::objective::Fineness;
+use super::plot::svg;
+use super::report::{change, Study, Verdict};
+use super::variation::{base, run_all, Ran, Run, Traces, Variation};
+use crate::error::Fault;
+use crate::metrics::StickSlip;
+use crate::params::Params;
+
+/// Figure 5: Young's modulus and damping.
+///
+/// # Errors
+/// What stops the block.
+pub fn fig_5(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
+    let base = base(compound, fineness);
+    let moduli = [15e6, 30e6, 45e6, 60e6, 75e6].map(|e: f64| {
+        let mut run = base.clone();
+        run.params.rubber.young_modulus = e;
+        Run { label: format!("E = {:.0} N/mm2", 1e-6 * e), value: e, ..run }
+    });
+    let damping = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0].map(|factor: f64| {
+        let mut run = base.clone();
+        run.params.rubber.stiffness_damping *= factor;
+        let beta = run.params.rubber.stiffness_damping;
+        Run { label: format!("beta = {:.0} us", 1e6 * beta), value: beta, ..run }
+    });
+    let modulus = Variation {
+        name: "fig-5-modulus",
+        header: "young_modulus_pa",
+        title: "Young's modulus".to_string(),
+        runs: run_all(moduli.to_vec())?,
+    };
+    let damping = Variation {
+        name: "fig-5-damping",
+        header: "stiffness_damping_s",
+        title: "Damping factor".to_string(),
+        runs: run_all(damping.to_vec())?,
+    };
+    let mut verdicts = trend(&modulus, "E", [false, true]);
+    verdicts.extend(trend(&damping, "beta", [false, true]));
+    let silent = damping.frequencies().last().is_some_and(|hz| *hz == 0.0);
+    let first = damping.runs.iter().find(|r| r.2.frequency == 0.0).map(|r| r.0.value);
+    verdicts.push(Verdict::new(
+        "for large damping the oscillation vanishes",
+        silent,
+        first.map_or("never up to 3 beta".to_string(), |b| format!("from {:.0} us on", 1e6 * b)),
+    ));
+    Ok(Study {
+        name: "fig-5",
+        title: "Young's modulus and material damping",
+        notes: "The values of beta are lost in the paper; ours run from half to three times the \
+                identified one."
+            .to_string(),
+        tables: vec![modulus.summary(), damping.summary(), modulus.traces(), damping.traces()],
+        pictures: vec![(
+            "fig-5.svg".to_string(),
+            svg(&[modulus.displacements(), damping.displacements()], 2)?,
+        )],
+        verdicts,
+    })
+}
+
+/// Verdicts on how amplitude and frequency go with a quantity, over the runs that oscillate; `rises`:
+/// amplitude, frequency.
+fn trend(variation: &Variation, quantity: &str, rises: [bool; 2]) -> Vec<Verdict> {
+    let loud: Vec<&Ran> =
+        variation.runs.iter().filter(|r| r.2.frequency > 0.0).collect();
+    let values = [
+        ("amplitude", loud.iter().map(|r| r.2.displacement_amplitude).collect::<Vec<_>>()),
+        ("frequency", loud.iter().map(|r| r.2.frequency).collect()),
+    ];
+    values
+        .into_iter()
+        .zip(rises)
+        .map(|((what, values), rises)| {
+            let word = if rises { "rises" } else { "falls" };
+            let steps = values.windows(2).all(|w| (w[1] > w[0]) == rises);
+            let number = match (values.first(), values.last()) {
+                (Some(a), Some(b)) if values.len() > 1 => change(*a, *b),
+                _ => "fewer than two runs oscillate".to_string(),
+            };
+            Verdict::new(format!("{what} {word} with {quantity}"), steps && values.len() > 1, number)
+        })
+        .collect()
+}
+
+/// Figure 6: sliding speed.
+///
+/// # Errors
+/// What stops the block.
+pub fn fig_6(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
+    let runs = [0.05, 0.1, 0.2, 0.3, 0.4, 0.5].map(|speed: f64| Run {
+        label: format!("{:.0} mm/s", 1e3 * speed),
+        value: speed,
+        speed,
+        ..base(compound, fineness)
+    });
+    let speeds = Variation {
+        name: "fig-6",
+        header: "speed_m_s",
+        title: "Sliding speed".to_string(),
+        runs: run_all(runs.to_vec())?,
+    };
+    let hz = speeds.frequencies();
+    let stick: Vec<f64> = speeds.runs.iter().map(|r| most_stuck(&r.1, &r.2)).collect();
+    let told = |i: usize| match hz[i] {
+        hz if hz > 0.0 => format!("{hz:.0} Hz"),
+        _ => "silent".to_string(),
+    };
+    let verdicts = vec![
+        Verdict::new("no oscillation at 50 mm/s", hz[0] == 0.0, told(0)),
+        Verdict::new(
+            "oscillation from 100 to 400 mm/s",
+            hz[1..5].iter().all(|f| *f > 0.0),
+            format!("{:.0} to {:.0} Hz", hz[1], hz[4]),
+        ),
+        Verdict::new("no oscillation at 500 mm/s", hz[5] == 0.0, told(5)),
+        Verdict::new(
+            "a sticking phase at 100, 200 and 300 mm/s",
+            stick[1..4].iter().all(|s| *s > 0.5),
+            format!("up to {:.0}, {:.0}, {:.0} % stuck", 1e2 * stick[1], 1e2 * stick[2], 1e2 * stick[3]),
+        ),
+        Verdict::new(
+            "no prominent sticking phase at 400 mm/s",
+            stick[4] < 0.5,
+            format!("up to {:.0} % stuck", 1e2 * stick[4]),
+        ),
+    ];
+    Ok(Study {
+        name: "fig-6",
+        title: "Sliding speed",
+        notes: "A sticking phase: more than half of the contact below the smoothing speed at some time \
+                of the settled part."
+            .to_string(),
+        tables: vec![speeds.summary(), speeds.traces()],
+        pictures: vec![(
+            "fig-6.svg".to_string(),
+            svg(&[speeds.displacements(), speeds.limit_cycles()], 2)?,
+        )],
+        verdicts,
+    })
+}
+
+/// Largest share of the contact that sticks at one time of the settled part.
+fn most_stuck(traces: &Traces, metrics: &StickSlip) -> f64 {
+    traces
+        .time
+        .iter()
+        .zip(&traces.stick)
+        .filter(|(t, _)| **t >= metrics.settled_from)
+        .map(|(_, s)| *s)
+        .fold(0.0, f64::max)
+}
+
+/// Figure 7: pressure and geometry.
+///
+/// # Errors
+/// What stops the block.
+pub fn fig_7(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
+    let pressures = [0.08e6, 0.16e6, 0.25e6, 0.40e6, 0.63e6].map(|pressure: f64| Run {
+        label: format!("{:.2} N/mm2", 1e-6 * pressure),
+        value: pressure,
+        pressure,
+        ..base(compound, fineness)
+    });
+    let geometries = [(10, 15), (6, 15), (10, 45), (6, 45)].map(|(h, l): (u32, u32)| {
+        let mut run = base(compound, fineness);
+        run.params.block.height = 1e-3 * f64::from(h);
+        run.params.block.length = 1e-3 * f64::from(l);
+        fineness.apply(&mut run.params);
+        Run { label: format!("h {h} mm, l {l} mm"), value: 1e-3 * f64::from(h), ..run }
+    });
+    let pressure = Variation {
+        name: "fig-7-pressure",
+        header: "pressure_pa",
+        title: "Mean pressure".to_string(),
+        runs: run_all(pressures.to_vec())?,
+    };
+    let geometry = Variation {
+        name: "fig-7-geometry",
+        header: "height_m",
+        title: "Block geometry".to_string(),
+        runs: run_all(geometries.to_vec())?,
+    };
+    let mut verdicts = trend(&pressure, "pressure", [true, false]);
+    verdicts.truncate(1);
+    let low = pressure.frequencies()[0];
+    verdicts.push(Verdict::new(
+        "the oscillation vanishes at small pressure (0.08 N/mm2)",
+        low == 0.0,
+        if low == 0.0 { "silent".to_string() } else { format!("{low:.0} Hz") },
+    ));
+    let (x, f) = (geometry.amplitudes(), geometry.frequencies());
+    verdicts.push(Verdict::new(
+        "amplitude rises with height",
+        x[0] > x[1] && x[2] > x[3],
+        format!("{} (l 15), {} (l 45) from 6 to 10 mm", change(x[1], x[0]), change(x[3], x[2])),
+    ));
+    verdicts.push(Verdict::new(
+        "amplitude falls with length",
+        x[0] > x[2] && x[1] > x[3],
+        format!("{} (h 10), {} (h 6) from 15 to 45 mm", change(x[0], x[2]), change(x[1], x[3])),
+    ));
+    let mut order: Vec<usize> = (0..4).collect();
+    order.sort_by(|a, b| x[*a].total_cmp(&x[*b]));
+    verdicts.push(Verdict::new(
+        "the frequency falls where the amplitude rises",
+        order.windows(2).all(|w| f[w[0]] > f[w[1]]),
+        order.iter().map(|i| format!("{:.0} um {:.0} Hz", 1e6 * x[*i], f[*i])).collect::<Vec<_>>().join(", "),
+    ));
+    Ok(Study {
+        name: "fig-7",
+        title: "Mean pressure and block geometry",
+        notes: String::new(),
+        tables: vec![pressure.summary(), geometry.summary(), pressure.traces()],
+        pictures: vec![(
+            "fig-7.svg".to_string(),
+            svg(&[pressure.displacements(), geometry.displacements()], 2)?,
+        )],
+        verdicts,
+    })
+}
