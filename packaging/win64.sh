@@ -28,6 +28,8 @@ rustc=$(dpkg -L rustc-web | grep 'bin/rustc$')
 target=x86_64-win7-windows-gnu
 target_dir=${CARGO_TARGET_DIR:-$PWD/target}/win64
 say "compiler: $("$rustc" --version)"
+# bindgen looks up the compiler's own headers only when it builds for the host.
+BINDGEN_EXTRA_CLANG_ARGS_x86_64_win7_windows_gnu="-I$(x86_64-w64-mingw32-gcc -print-file-name=include)" \
 CC_x86_64_win7_windows_gnu=x86_64-w64-mingw32-gcc AR_x86_64_win7_windows_gnu=x86_64-w64-mingw32-ar \
 RUSTC=$rustc RUSTC_BOOTSTRAP=1 CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_STRIP=symbols \
     cargo build --quiet --release --lib --no-default-features -Zbuild-std=std,panic_unwind \
@@ -48,7 +50,7 @@ for name in belt.x normal_load solver.elements_along solver.elements_up force.x;
 done
 
 prefix=$(mktemp -d)
-trap 'rm -rf "$prefix"' EXIT
+trap 'WINEPREFIX=$prefix wineserver -k 2>/dev/null || true; sleep 1; rm -rf "$prefix"' EXIT
 say "driving the DLL under wine"
 WINEPREFIX=$prefix WINEDEBUG=-all wine out/host.exe out/binaries/win64/TreadBlock.dll "${arguments[@]}" |
     tr -d '\r' > out/win64.txt
