@@ -12,10 +12,14 @@ use crate::reduction::Reduction;
 /// Fixed-interface modes are kept up to this multiple of `solver.frequency_bound`, so that the
 /// eigenfrequencies below the bound itself are exact within 0.1 %.
 const BOUND_MARGIN: f64 = 1.5;
-/// Length of an element along the face [m], unless given.
-const ELEMENT_LENGTH: f64 = 2.5e-3;
+/// Elements along the face of a block of [`REFERENCE_LENGTH`], unless given; of others as the cube
+/// root of their length, since the edges need the resolution. Measured against the independent
+/// solutions: see the convergence table in the book.
+const ELEMENTS_ALONG: f64 = 10.0;
+/// Length that [`ELEMENTS_ALONG`] holds for [m].
+const REFERENCE_LENGTH: f64 = 15e-3;
 /// Height of an element [m], unless given.
-const ELEMENT_HEIGHT: f64 = 2.2e-3;
+const ELEMENT_HEIGHT: f64 = 1.5e-3;
 
 /// What the reduction depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,17 +42,18 @@ impl Shape {
     /// The shape that the parameters describe.
     pub fn of(params: &Params) -> Self {
         let (block, rubber, solver) = (&params.block, &params.rubber, &params.solver);
-        let count = |given: usize, size: f64, element: f64, least: usize| match given {
-            0 => ((size / element).round() as usize).max(least),
+        let count = |given: usize, wanted: f64, least: usize| match given {
+            0 => (wanted.round() as usize).max(least),
             given => given,
         };
+        let along = ELEMENTS_ALONG * (block.length / REFERENCE_LENGTH).cbrt();
         let omega = std::f64::consts::TAU * BOUND_MARGIN * solver.frequency_bound;
         Self {
             length: block.length,
             height: block.height,
             elements: (
-                count(solver.elements_along, block.length, ELEMENT_LENGTH, 4),
-                count(solver.elements_up, block.height, ELEMENT_HEIGHT, 3),
+                count(solver.elements_along, along, 4),
+                count(solver.elements_up, block.height / ELEMENT_HEIGHT, 3),
             ),
             poisson_ratio: rubber.poisson_ratio,
             plane: rubber.plane,

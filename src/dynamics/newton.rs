@@ -7,6 +7,13 @@ use super::linear::Linear;
 use super::matrices::{FlatMatrices, StageMatrices};
 use super::stage::Stage;
 
+/// Largest fall of friction with speed that a direction follows, as a share of the block's own
+/// resistance: far from the solution the tangent of a steeper fall overshoots, near it only the
+/// tangent converges fast.
+const STEEPEST_FALL: [f64; 2] = [0.3, 0.95];
+/// Iterations after which the solution is taken to be near.
+const FAR: usize = 5;
+
 /// A direction and the buffers to find it.
 #[derive(Clone, Debug)]
 pub(super) struct Newton {
@@ -46,7 +53,8 @@ impl Stage {
     /// With d = v − v_free and φ = f_n + G₀ d_n: (B + g) δ_t = f_t − B d_t − P φ, then
     /// d_n = A⁻¹ φ − Pᵀ (d_t + δ_t) (theory eq. 3.9).
     #[inline(always)]
-    pub(super) fn flat_direction(&mut self, m: &FlatMatrices) -> bool {
+    pub(super) fn flat_direction(&mut self, m: &FlatMatrices, iteration: usize) -> bool {
+        let steepest_fall = STEEPEST_FALL[usize::from(iteration > FAR)];
         let n = &mut self.newton;
         let stride = self.slip.len();
         for ((d, v), free) in n.difference.iter_mut().zip(&self.v).zip(&self.v_free) {
@@ -57,7 +65,7 @@ impl Stage {
         for i in 0..stride {
             n.normal[i] = t.normal[i] + m.normal_slope[i] * d_n[i];
             // A falling characteristic is not followed: its tangent would overshoot.
-            let slope = t.slip_slope[i].max(-0.3 * m.b[i * stride + i]);
+            let slope = t.slip_slope[i].max(-steepest_fall * m.b[i * stride + i]);
             n.slopes[i] = [slope, 0.0, 0.0, m.normal_slope[i]];
             n.diagonal[i] = slope;
         }
@@ -91,7 +99,13 @@ impl Stage {
     }
 
     /// (S + G) δ = f − S (v − v_free) with the full matrix of the turned block.
-    pub(super) fn full_direction(&mut self, matrices: &StageMatrices, motion: &Kinematics) -> bool {
+    pub(super) fn full_direction(
+        &mut self,
+        matrices: &StageMatrices,
+        motion: &Kinematics,
+        iteration: usize,
+    ) -> bool {
+        let steepest_fall = STEEPEST_FALL[usize::from(iteration > FAR)];
         let n = &mut self.newton;
         let (nodes, stride) = (n.nodes, self.slip.len());
         let size = 2 * nodes;
@@ -103,7 +117,9 @@ impl Stage {
         for i in 0..nodes {
             self.force[i] = cos * t.tangential[i] + sin * t.normal[i];
             self.force[stride + i] = -sin * t.tangential[i] + cos * t.normal[i];
-            let (tt, tn, nn) = (t.slip_slope[i], t.coupling[i], t.approach_slope[i]);
+            let steepest = -steepest_fall * matrices.inverse_delassus[i * size + i];
+            let tt = t.slip_slope[i].max(steepest);
+            let (tn, nn) = (t.coupling[i], t.approach_slope[i]);
             // Rᵀ G R with G = [tt tn; 0 nn] in the road frame.
             let (gx, gz) = (tt * cos + tn * sin, -tt * sin + tn * cos);
             let slopes = [

@@ -240,9 +240,9 @@ impl Stage {
             // The elimination of the normal velocities converges fast where the contact is as
             // stiff as it assumes; where it does not, the full matrix serves.
             let solved = if flat && iteration <= FLAT_ITERATIONS {
-                self.flat_direction(&matrices.flat)
+                self.flat_direction(&matrices.flat, iteration)
             } else {
-                self.full_direction(matrices, motion)
+                self.full_direction(matrices, motion, iteration)
             };
             if !solved {
                 convergence.converged = false;
