@@ -57,7 +57,7 @@ impl TreadBlock {
         let linear = build::linear(&reduction, params);
         let face = build::face(&reduction, params)?;
         let integrator = build::integrator(&linear, &face, params);
-        let nodes = linear.stride;
+        let nodes = linear.nodes;
         let mut block = Self {
             state: State::new(&linear),
             stations: Stations::along(&reduction.mesh),
