@@ -131,6 +131,19 @@ impl TreadBlock {
         self.memory.show(&self.params.effect, &mut self.outputs);
     }
 
+    /// Worn depth of the contact nodes [m], from the run-in to the run-out edge.
+    pub fn worn(&self) -> &[f64] {
+        &self.state.worn[..self.reduction.contact_nodes()]
+    }
+
+    /// Sets the worn depth of the contact nodes [m], as a cycle-jump over many metres does.
+    pub fn set_worn(&mut self, depth: &[f64]) {
+        for (worn, depth) in self.state.worn.iter_mut().zip(depth) {
+            *worn = *depth;
+        }
+        self.observe();
+    }
+
     /// Time reached [s].
     pub fn time(&self) -> f64 {
         self.state.time
