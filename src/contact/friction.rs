@@ -42,8 +42,6 @@ pub enum Law {
     LogBell(LogBell),
     /// See [`Table`].
     Table(Box<Table>),
-    /// See [`TwoExponentials`].
-    TwoExponentials(TwoExponentials),
 }
 
 impl Law {
@@ -57,12 +55,6 @@ impl Law {
             (FrictionForm::LogBell, _) => {
                 Self::LogBell(LogBell { common, steepness: params.bell_steepness })
             }
-            (FrictionForm::TwoExponentials, _) => Self::TwoExponentials(TwoExponentials {
-                common,
-                exponent: params.decay_exponent,
-                share: params.second_share,
-                speed: params.second_speed,
-            }),
             (FrictionForm::Table, Some(table)) => {
                 let mut table = table.clone();
                 table.smoothing_speed = params.smoothing_speed;
@@ -81,7 +73,6 @@ impl FrictionLaw for Law {
             Self::Rational(law) => law.mu(p, v),
             Self::LogBell(law) => law.mu(p, v),
             Self::Table(law) => law.mu(p, v),
-            Self::TwoExponentials(law) => law.mu(p, v),
         }
     }
 }
@@ -160,29 +151,6 @@ impl FrictionLaw for Exponential {
 #[inline(always)]
 fn power(ratio: Pack, exponent: f64) -> Pack {
     ratio.max(Pack::splat(1e-290)).powf(exponent)
-}
-
-/// Two exponentials: fall = (1 − s) exp(−(|v|/v_d)^γ) + s exp(−|v|/v₂), a steep part that excites at
-/// small speeds and a slow one that goes on falling while the block slips at metres per second.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TwoExponentials {
-    common: Common,
-    exponent: f64,
-    share: f64,
-    speed: f64,
-}
-
-impl FrictionLaw for TwoExponentials {
-    #[inline(always)]
-    fn mu(&self, p: Pack, v: Pack) -> Mu {
-        let splat = Pack::splat;
-        let power = power(v.abs() * splat(1.0 / self.common.decay_speed), self.exponent);
-        let slow = v.abs() * splat(1.0 / self.speed);
-        let first = (-power).exp() * splat(1.0 - self.share);
-        let second = (-slow).exp() * splat(self.share);
-        let slope = -(splat(self.exponent) * power * first + slow * second);
-        self.common.mu(p, v, first + second, slope)
-    }
 }
 
 /// Rational: fall = 1/(1 + (|v|/v_d)^m); the form of Huemer et al. (2001) with its rising branch left

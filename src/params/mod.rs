@@ -99,8 +99,6 @@ pub enum FrictionForm {
     LogBell,
     /// Table measured over p and v, see the law.
     Table,
-    /// Two exponentials, see the law.
-    TwoExponentials,
 }
 
 /// Friction characteristic μ(p, v).
@@ -126,10 +124,6 @@ pub struct Friction {
     pub rational_exponent: f64,
     /// Half width k of the log-bell law in decades⁻¹ [-].
     pub bell_steepness: f64,
-    /// Share s of the second exponential in the law of two [-].
-    pub second_share: f64,
-    /// Speed of the second exponential's fall v₂ [m/s].
-    pub second_speed: f64,
     /// File of a measured characteristic (CSV: pressure_pa, speed_m_s, mu); empty: none.
     pub table_file: String,
 }
@@ -147,8 +141,6 @@ impl Default for Friction {
             reference_pressure: 250e3,
             rational_exponent: 1.0,
             bell_steepness: 0.7,
-            second_share: 0.5,
-            second_speed: 3.0,
             table_file: String::new(),
         }
     }

@@ -67,11 +67,6 @@ pub fn unknowns(form: FrictionForm) -> Vec<Unknown> {
         FrictionForm::Exponential => out.push(linear("friction.decay_exponent", 0.25, 1.5)),
         FrictionForm::Rational => out.push(linear("friction.rational_exponent", 0.25, 2.5)),
         FrictionForm::LogBell => out.push(linear("friction.bell_steepness", 0.1, 1.5)),
-        FrictionForm::TwoExponentials => out.extend([
-            linear("friction.decay_exponent", 0.4, 1.5),
-            linear("friction.second_share", 0.0, 1.0),
-            log("friction.second_speed", 0.3, 30.0),
-        ]),
         FrictionForm::Table => {}
     }
     out
