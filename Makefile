@@ -1,6 +1,6 @@
 # What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
 .DEFAULT_GOAL := help
-.PHONY: help setup fmu demo test bench release gap-check fuzz win64 docs clean
+.PHONY: help setup fmu demo test bench release gap-check paper fuzz win64 docs clean
 
 PYTHON := .venv/bin/python
 
@@ -38,6 +38,11 @@ release: ## The FMU for linux64 and win64, checked, with its checksums, in out/r
 gap-check: ## Diagnose the model's gap to the shared measurements
 	@packaging/setup.sh build
 	@cargo run --quiet --release --bin tread -- gap check
+
+paper: ## The paper's studies on this model: out/paper/index.html, and their tests
+	@packaging/setup.sh build
+	@cargo run --quiet --release --bin tread -- study all --out out/paper
+	@cargo test --quiet --release --test study -- --include-ignored
 
 fuzz: ## Fuzz the C interface and the file readers, 60 s each (FUZZ_SECONDS=...)
 	@packaging/setup.sh build

@@ -4,22 +4,10 @@ use tread_block::contact::friction::Law;
 use tread_block::contact::{Face, Traction};
 use tread_block::params::{Contact, Friction};
 
-/// One node of 1 mm² with the default laws.
+/// One node of 1 mm² with the default laws; full contact from 5 kPa.
 fn face() -> Face {
-    Face {
-        area: vec![1e-6],
-        profile: vec![0.0],
-        smoothing_speed: 0.01,
-        friction: Law::new(&Friction::default(), None),
-        contact: Contact::default(),
-        shear_strength: 0.0,
-        shear_smoothing: 0.01,
-        pull_off: 0.0,
-        adhesion_pressure: 5e3,
-        damping: 0.0,
-        viscosity: 0.0,
-        road: None,
-    }
+    let law = Law::new(&Friction::default(), None);
+    Face { adhesion_pressure: 5e3, ..Face::new(&[1e-6], &[0.0], law, &Contact::default(), 0.01) }
 }
 
 /// The base face and one per contact effect.
@@ -38,7 +26,13 @@ const A: f64 = 3e-6;
 
 fn evaluate(face: &Face, rest: f64, slip: f64, lift: f64) -> Traction {
     let mut out = Traction::new(1);
-    face.evaluate(&[rest - A * lift], A, &[slip], &[lift], &[0.9], &mut out);
+    let node = |value: f64, padding: f64| {
+        let mut values = vec![padding; face.area.len()];
+        values[0] = value;
+        values
+    };
+    let (compression, factor) = (node(rest - A * lift, -1.0), node(0.9, 1.0));
+    face.evaluate(&compression, A, &node(slip, 0.0), &node(lift, 0.0), &factor, &mut out);
     out
 }
 

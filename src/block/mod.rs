@@ -57,7 +57,7 @@ impl TreadBlock {
         let linear = build::linear(&reduction, params);
         let face = build::face(&reduction, params)?;
         let integrator = build::integrator(&linear, &face, params);
-        let nodes = linear.stride;
+        let nodes = linear.nodes;
         let mut block = Self {
             state: State::new(&linear),
             stations: Stations::along(&reduction.mesh),
@@ -129,6 +129,19 @@ impl TreadBlock {
         self.memory.rest(&self.params.effect, duration, &mut self.state);
         self.observe();
         self.memory.show(&self.params.effect, &mut self.outputs);
+    }
+
+    /// Worn depth of the contact nodes [m], from the run-in to the run-out edge.
+    pub fn worn(&self) -> &[f64] {
+        &self.state.worn[..self.reduction.contact_nodes()]
+    }
+
+    /// Sets the worn depth of the contact nodes [m], as a cycle-jump over many metres does.
+    pub fn set_worn(&mut self, depth: &[f64]) {
+        for (worn, depth) in self.state.worn.iter_mut().zip(depth) {
+            *worn = *depth;
+        }
+        self.observe();
     }
 
     /// Time reached [s].

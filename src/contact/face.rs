@@ -56,6 +56,15 @@ pub struct Traction {
     pub pressure: Vec<f64>,
 }
 
+/// How the normal force of each node changes with its compression and approach speed, padded.
+#[derive(Clone, Debug, Default)]
+pub struct NormalSlopes {
+    /// By the compression [N/m].
+    pub stiffness: Vec<f64>,
+    /// By the approach speed [N s/m].
+    pub damping: Vec<f64>,
+}
+
 /// Number of nodes filled up to full packs.
 pub fn padded(nodes: usize) -> usize {
     nodes.div_ceil(LANES) * LANES
@@ -107,10 +116,12 @@ impl Face {
         }
     }
 
-    /// Slope dp/du·area [N/m] of each node at the pressure `p` [Pa].
-    pub fn stiffness_at(&self, p: f64) -> Vec<f64> {
+    /// Slopes of the normal force of each node at the pressure `p` [Pa].
+    pub fn slopes_at(&self, p: f64) -> NormalSlopes {
         let slope = normal::pressure(&self.contact, normal::compression(&self.contact, p)).1;
-        self.area.iter().map(|area| area * slope).collect()
+        let damping = self.damping * p + self.viscosity;
+        let each = |per_area: f64| self.area.iter().map(|area| area * per_area).collect();
+        NormalSlopes { stiffness: each(slope), damping: each(damping) }
     }
 
     /// Evaluates all nodes into `out`; returns the highest pressure [Pa]. All slices are padded.

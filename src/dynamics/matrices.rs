@@ -3,6 +3,7 @@
 
 use super::dense;
 use super::linear::Linear;
+use crate::contact::NormalSlopes;
 
 /// For stage equations with coefficient a [s] (γh/2 of the step h).
 #[derive(Clone, Debug)]
@@ -79,15 +80,15 @@ impl StageMatrices {
             && (linear.base.is_empty() || self.angle == angle)
     }
 
-    /// Computes them (theory eqs. 3.5 to 3.9); `stiffness` is the slope dp/du·area of the contact
-    /// per node [N/m] that the elimination assumes. `false` if the block is numerically singular.
+    /// Computes them (theory eqs. 3.5 to 3.9); `contact` are the slopes of the normal forces
+    /// that the elimination assumes. `false` if the block is numerically singular.
     pub fn compute(
         &mut self,
         linear: &Linear,
         a: f64,
         stiffness_factor: f64,
         angle: f64,
-        stiffness: &[f64],
+        contact: &NormalSlopes,
     ) -> bool {
         (self.a, self.stiffness_factor, self.angle) = (a, stiffness_factor, angle);
         let kappa = stiffness_factor
@@ -99,7 +100,7 @@ impl StageMatrices {
         self.free_face(linear, a, angle);
         self.delassus(linear, a);
         dense::invert(&mut self.inverse_delassus, 2 * linear.nodes)
-            && self.flat.split(&self.inverse_delassus, a, stiffness, linear.nodes, linear.stride)
+            && self.flat.split(&self.inverse_delassus, a, contact, linear.nodes, linear.stride)
     }
 
     /// Γ̃, q and N⁻¹.
@@ -165,10 +166,18 @@ impl StageMatrices {
 }
 
 impl FlatMatrices {
-    fn split(&mut self, s: &[f64], a: f64, stiffness: &[f64], n: usize, stride: usize) -> bool {
+    fn split(
+        &mut self,
+        s: &[f64],
+        a: f64,
+        contact: &NormalSlopes,
+        n: usize,
+        stride: usize,
+    ) -> bool {
         let full = |i: usize, j: usize| s[i * 2 * n + j];
-        for (slope, k) in self.normal_slope.iter_mut().zip(stiffness) {
-            *slope = a * k;
+        let slopes = contact.stiffness.iter().zip(&contact.damping);
+        for (slope, (k, d)) in self.normal_slope.iter_mut().zip(slopes) {
+            *slope = a * k + d;
         }
         // A in the compact corner of `b`'s room, inverted there.
         let room = &mut self.b[..n * n];

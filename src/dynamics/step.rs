@@ -6,7 +6,7 @@ use super::matrices::StageMatrices;
 use super::stage::Stage;
 use super::state::State;
 use super::tr_bdf2::{TrBdf2, D, W};
-use crate::contact::Face;
+use crate::contact::{Face, NormalSlopes};
 use crate::drive::Segment;
 use crate::error::Fault;
 
@@ -49,7 +49,7 @@ pub struct Statistics {
 #[derive(Clone, Debug)]
 pub struct Integrator {
     settings: Settings,
-    contact_stiffness: Vec<f64>,
+    contact: NormalSlopes,
     matrices: Vec<StageMatrices>,
     last_h: f64,
     step: TrBdf2,
@@ -60,12 +60,12 @@ pub struct Integrator {
 impl Integrator {
     /// An integrator for `linear`.
     ///
-    /// `contact_stiffness` is the typical slope dp/du·area of the contact per node [N/m], padded:
-    /// the solver converges the faster, the nearer it is.
-    pub fn new(linear: &Linear, settings: Settings, contact_stiffness: Vec<f64>) -> Self {
+    /// `contact` are the typical slopes of the normal forces:
+    /// the solver converges the faster, the nearer they are.
+    pub fn new(linear: &Linear, settings: Settings, contact: NormalSlopes) -> Self {
         Self {
             settings,
-            contact_stiffness,
+            contact,
             matrices: vec![StageMatrices::new(linear); LEVELS + 1],
             last_h: 0.0,
             step: TrBdf2::new(linear),
@@ -198,8 +198,8 @@ impl Integrator {
         let angle = segment.angle.at(from + h);
         if !matrices.fit(linear, D * h, state.stiffness_factor, angle) {
             self.statistics.matrices += 1;
-            let stiffness = &self.contact_stiffness;
-            if !matrices.compute(linear, D * h, state.stiffness_factor, angle, stiffness) {
+            let contact = &self.contact;
+            if !matrices.compute(linear, D * h, state.stiffness_factor, angle, contact) {
                 matrices.a = 0.0;
                 return Err(not_finite("the Delassus matrix"));
             }

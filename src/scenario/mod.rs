@@ -142,18 +142,33 @@ pub fn run(
     block: &mut TreadBlock,
     scenario: &Scenario,
     plan: &Plan,
-    mut visit: impl FnMut(f64, &TreadBlock) -> Result<(), Fault>,
+    visit: impl FnMut(f64, &TreadBlock) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
     plan.check()?;
     let start = scenario.start();
     block.initialize(start, scenario.pose(start))?;
+    go_on(block, scenario, plan, visit)
+}
+
+/// As [`run`], from the block's state as it is at the start of the scenario: worn, for example.
+///
+/// # Errors
+/// See [`simulate`].
+pub fn go_on(
+    block: &mut TreadBlock,
+    scenario: &Scenario,
+    plan: &Plan,
+    mut visit: impl FnMut(f64, &TreadBlock) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    plan.check()?;
+    let start = scenario.start();
     visit(start, block)?;
     let mut predictor = Predictor::default();
     let (mut t, end) = (start, start + plan.duration);
     for k in 1..=plan.rows() {
         let next = (start + k as f64 * plan.step).min(end);
         match plan.inputs {
-            Inputs::Exact => exact_step(block, scenario, t, next)?,
+            Inputs::Exact => advance(block, scenario, t, next)?,
             Inputs::Sampled => {
                 let known = Predictor::known(scenario.pose(t));
                 let segment = predictor.segment(t, next - t, known);
@@ -166,8 +181,11 @@ pub fn run(
     Ok(())
 }
 
-/// From `t` to `next` piece by piece; a piece shorter than rounding is no piece.
-fn exact_step(block: &mut TreadBlock, scenario: &Scenario, t: f64, next: f64) -> Result<(), Fault> {
+/// Moves the block from `t` to `next` [s] piece by piece; a piece shorter than rounding is no piece.
+///
+/// # Errors
+/// See [`TreadBlock::advance`].
+pub fn advance(block: &mut TreadBlock, scenario: &Scenario, t: f64, next: f64) -> Result<(), Fault> {
     const SLIVER: f64 = 1e-11;
     let mut at = t;
     while at < next {

@@ -68,7 +68,7 @@ pub fn html(studies: &[Study], compound: &str) -> String {
     ));
     for study in studies {
         out.push_str(&format!(
-            "<h2 id=\"{0}\">{0}: {1}</h2>\n<p>{2}</p>\n",
+            "<h2 id=\"{0}\">{0}: {1}</h2>\n<pre class=\"notes\">{2}</pre>\n",
             study.name,
             escape(study.title),
             escape(&study.notes)
@@ -126,7 +126,7 @@ const HEAD: &str = "<!doctype html>
 body { font: 15px/1.5 sans-serif; max-width: 1280px; margin: 2em auto; padding: 0 1em; color: #222 }
 table { border-collapse: collapse; margin: 0.6em 0 } td, th { border: 1px solid #ccc; padding: 2px 8px }
 .yes { background: #d8f0e0 } .no { background: #f8d8d0 } figure { margin: 1em 0 }
-figure svg { max-width: 100%; height: auto } pre { font-size: 12px }
+pre.notes { font: inherit; white-space: pre-wrap } figure svg { max-width: 100%; height: auto } pre { font-size: 12px }
 </style></head><body>
 <h1>Influences on the vibration frequencies of tire tread blocks</h1>
 <p>Kröger and Moldenhauer, ISMA 2010, repeated on this model. Dots are the paper's numbers.</p>

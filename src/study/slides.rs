@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::block::{Shape, TreadBlock};
+use crate::block::{Outputs, Shape, TreadBlock, STATIONS};
 use crate::error::Fault;
 use crate::metrics::{self, stick_slip, Recorder, StickSlip};
 use crate::params::Params;
@@ -89,6 +89,14 @@ pub fn observe(params: &Params, reductions: &Reductions, point: Point) -> Result
         metrics.frequency = 0.0;
     }
     Ok(Observed { metrics, growth: swings.growth() })
+}
+
+/// Share of the touching stations that slide slower than `bound` [m/s]: quasi-sticking creeps, so the
+/// bound is a share of the road's speed, not the smoothing speed.
+pub fn sticking(outputs: &Outputs, bound: f64) -> f64 {
+    let touching = || (0..STATIONS).filter(|k| outputs.pressure[*k] > 0.0);
+    let stuck = touching().filter(|k| outputs.sliding_speed[*k].abs() < bound).count();
+    stuck as f64 / touching().count().max(1) as f64
 }
 
 /// Ends a run whose vibration has died; never leaves this file.

@@ -6,7 +6,7 @@ use super::identify::objective::Fineness;
 use super::paper::PRESSURE;
 use super::plot::{Panel, Series};
 use super::report::csv;
-use super::slides::Reductions;
+use super::slides::{sticking, Reductions};
 use crate::block::TreadBlock;
 use crate::error::Fault;
 use crate::metrics::{stick_slip, Recorder, StickSlip};
@@ -21,6 +21,9 @@ pub const SPEED: f64 = 0.300;
 pub const DURATION: f64 = 20e-3;
 /// Distance of rows [s].
 const STEP: f64 = 2e-5;
+
+/// A station sticks while it slides slower than this share of the road speed.
+pub const STUCK: f64 = 0.15;
 
 /// A run of the block with its label.
 #[derive(Clone, Debug)]
@@ -80,7 +83,7 @@ fn simulate(run: Run, reductions: &Reductions) -> Result<Ran, Fault> {
         traces.time.push(time);
         traces.run_in.push([o.run_in_displacement[0], o.run_in_velocity[0]]);
         traces.run_out.push([o.run_out_displacement[0], o.run_out_velocity[0]]);
-        traces.stick.push(o.stick_fraction);
+        traces.stick.push(sticking(o, STUCK * run.speed));
         Ok(())
     })?;
     let metrics = stick_slip(&recorder.trace(), run.speed);

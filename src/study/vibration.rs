@@ -130,8 +130,8 @@ pub fn fig_6(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     Ok(Study {
         name: "fig-6",
         title: "Sliding speed",
-        notes: "A sticking phase: more than half of the contact below the smoothing speed at some time \
-                of the settled part."
+        notes: "A sticking phase: more than half of the contact slides slower than 15 % of the road speed \
+                at some time of the settled part."
             .to_string(),
         tables: vec![speeds.summary(), speeds.traces()],
         pictures: vec![(

@@ -87,10 +87,10 @@ impl Compared {
         let death = (-observed.growth / 1000.0).clamp(0.0, 4.0);
         match self.cell() {
             Cell::Hz(paper) if hz > 0.0 => snap_ratio(hz, paper).clamp(-1.0, 1.0),
-            Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => 0.4 + 0.2 * death,
+            Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => 0.5 + 0.5 * death,
             Cell::Between(low, high) => (hz / low).ln().min(0.0) + (hz / high).ln().max(0.0),
             _ if hz <= 0.0 => 0.0,
-            _ => 0.2 + 0.15 * (swing / SPEEDS[self.row]).min(4.0),
+            _ => 0.2 + 0.5 * (swing / SPEEDS[self.row]).min(4.0),
         }
     }
 }

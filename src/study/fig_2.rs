@@ -1,0 +1,108 @@
+//! Figure 2: friction characteristic, and contact stiffness as force over approach.
+
+use super::identify::objective::Fineness;
+use super::plot::{svg, Panel, Series};
+use super::report::{csv, Study, Verdict};
+use super::slides::Reductions;
+use crate::block::TreadBlock;
+use crate::contact::friction::{FrictionLaw, Law};
+use crate::drive::Pose;
+use crate::error::Fault;
+use crate::params::{NormalDrive, Params};
+
+/// Example of a measured characteristic: made up from a falling characteristic with 3 % scatter, only to
+/// show the format; put your own grid in its place.
+const EXAMPLE: &str = include_str!("../../examples/friction-grid.csv");
+/// Pressures of the paper's studies [Pa].
+const PRESSURES: [f64; 4] = [100e3, 250e3, 400e3, 600e3];
+
+/// Figure 2.
+///
+/// # Errors
+/// What stops the block.
+pub fn fig_2(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
+    let law = Law::new(&compound.friction, None);
+    let speeds: Vec<f64> = (0..80).map(|i| 1e-3 * 3000.0_f64.powf(f64::from(i) / 79.0)).collect();
+    let mu = |p: f64, v: f64| law.at(p, v)[0];
+    let measured = measured();
+    let mut series = Vec::new();
+    for (color, p) in PRESSURES.iter().enumerate() {
+        let line = speeds.iter().map(|v| (1e3 * v, mu(*p, *v))).collect();
+        series.push(Series::line(format!("{:.2} N/mm2", 1e-6 * p), color, line));
+        let dots = measured.iter().filter(|m| m[0] == *p).map(|m| (1e3 * m[1], m[2]));
+        series.push(Series::dots("", color, dots.collect()));
+    }
+    let axes = ["sliding speed [mm/s]", "friction coefficient"];
+    let mut friction = Panel::new("friction characteristic, dots: example data", axes, series);
+    friction.log_x = true;
+    let curve = approach(compound, fineness)?;
+    let rows = PRESSURES
+        .iter()
+        .flat_map(|p| speeds.iter().map(|v| vec![*p, *v, mu(*p, *v)]).collect::<Vec<_>>());
+    let (soft, stiff) = (slope(&curve, 10e3), slope(&curve, 400e3));
+    let slope_at = |v: f64| law.at(250e3, v)[1];
+    Ok(Study {
+        name: "fig-2",
+        title: "Friction characteristic and contact stiffness",
+        notes: "Lines: the identified laws. Dots: an example of measured data, made up to show the \
+                format (examples/friction-grid.csv); the paper's own are not published."
+            .to_string(),
+        tables: vec![
+            ("fig-2-friction.csv".to_string(), csv("pressure_pa,speed_m_s,mu", rows)),
+            (
+                "fig-2-stiffness.csv".to_string(),
+                csv("approach_m,mean_pressure_pa", curve.iter().map(|c| c.to_vec())),
+            ),
+        ],
+        pictures: vec![("fig-2.svg".to_string(), svg(&[friction, stiffness(&curve)], 2)?)],
+        verdicts: vec![
+            Verdict::new(
+                "friction falls with speed at 0.25 N/mm2 and 300 mm/s",
+                slope_at(0.3) < 0.0,
+                format!("{:.2} per m/s", slope_at(0.3)),
+            ),
+            Verdict::new(
+                "the contact is soft at first and stiffens",
+                stiff > 2.0 * soft,
+                format!("{:.1e} to {:.1e} Pa/m from 10 to 400 kPa", soft, stiff),
+            ),
+        ],
+    })
+}
+
+fn measured() -> Vec<[f64; 3]> {
+    let numbers = |line: &str| -> Vec<f64> {
+        line.split(',').filter_map(|cell| cell.trim().parse().ok()).collect()
+    };
+    EXAMPLE.lines().filter_map(|line| numbers(line).try_into().ok()).collect()
+}
+
+/// Mean pressure over approach of a pressed block at rest: approach [m], pressure [Pa].
+fn approach(compound: &Params, fineness: &Fineness) -> Result<Vec<[f64; 2]>, Fault> {
+    let mut params = compound.clone();
+    (params.block.height, params.block.length) = (0.010, 0.015);
+    params.drive.normal = NormalDrive::Load;
+    fineness.apply(&mut params);
+    let mut block = TreadBlock::with_reduction(&params, Reductions::default().of(&params)?)?;
+    let area = params.block.length * params.block.width;
+    (1..=40)
+        .map(|i| {
+            let pressure = 650e3 * f64::from(i * i) / 1600.0;
+            block.initialize(0.0, Pose { load: pressure * area, ..Pose::default() })?;
+            Ok([params.block.height - block.outputs().carriage_z, pressure])
+        })
+        .collect()
+}
+
+/// Stiffness per area [Pa/m] around a pressure.
+fn slope(curve: &[[f64; 2]], pressure: f64) -> f64 {
+    let at = curve.partition_point(|c| c[1] < pressure).clamp(1, curve.len() - 1);
+    (curve[at][1] - curve[at - 1][1]) / (curve[at][0] - curve[at - 1][0])
+}
+
+fn stiffness(curve: &[[f64; 2]]) -> Panel {
+    let points = curve.iter().map(|c| (1e6 * c[0], 1e-6 * c[1])).collect();
+    let axes = ["approach [um]", "mean pressure [N/mm2]"];
+    let series = vec![Series::line("block and contact, simulated", 0, points)];
+    Panel::new("contact stiffness, h 10 mm, l 15 mm", axes, series)
+}
