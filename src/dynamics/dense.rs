@@ -47,7 +47,7 @@ pub fn solve_with_diagonal(
     }
     for k in 0..size {
         let pivot = work[k * stride + k];
-        if !(pivot > 0.0) {
+        if pivot.is_nan() || pivot <= 0.0 {
             return false;
         }
         let inverse = 1.0 / pivot;

@@ -24,8 +24,8 @@ impl Form {
 /// γ = √(2U/(G V)) from the elastic energy U at full stiffness.
 ///
 /// `kraus` (Kraus, Rubber Chem. Technol. 51, 1978, with m = 0.55): f = 1 − s·x/(1 + x),
-/// x = (γ_a/γ_c)^(2m), γ_a the largest strain of the last [`MEMORY`]. `instantaneous`:
-/// f = 1 − s·γ/(γ + γ_c), smoothed over [`SMOOTHING`]. γ_r is the strain at which Young's modulus
+/// x = (γ_a/γ_c)^(2m), γ_a the largest strain of the last `MEMORY`. `instantaneous`:
+/// f = 1 − s·γ/(γ + γ_c), smoothed over `SMOOTHING`. γ_r is the strain at which Young's modulus
 /// was measured; the block is settled at that modulus.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PayneSoftening {

@@ -168,7 +168,7 @@ pub fn modulus_over_density(
         sum += ((f0 * std::f64::consts::TAU).powi(2) / lambda).ln();
         count += 1.0;
     }
-    Ok((sum / count as f64).exp())
+    Ok((sum / count).exp())
 }
 
 /// The problem that a search solves: residuals of the cells over the unknowns.
