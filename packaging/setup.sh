@@ -5,10 +5,10 @@
 #
 #   build  C compiler, libclang, zig: to build the FMU
 #   run    fmpy, numpy, matplotlib: the demo and the studies
-#   test   pytest and the importers that judge the FMU, valgrind
+#   test   pytest and the importers that judge the FMU, valgrind, CalculiX to compare with
 #
 # Python packages go into .venv of this checkout. The distribution is asked (apt-get, as root or with
-# sudo) only for what no wheel serves: C compiler, Python's venv module, valgrind.
+# sudo) only for what no wheel serves: C compiler, Python's venv module, valgrind, CalculiX.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 wanted=("$@")
@@ -92,6 +92,7 @@ for part in "${wanted[@]}"; do
             pip_install packaging/requirements-test.txt
             command -v valgrind >/dev/null || apt valgrind
             command -v objdump >/dev/null || apt binutils
+            command -v ccx >/dev/null || apt calculix-ccx
             ;;
         *) fail "unknown part $part: build, run, test" ;;
     esac

@@ -60,6 +60,8 @@ stage_docs() {
 }
 
 stage_rust() {
+    # Without it tests/calculix.rs would skip.
+    check "CalculiX is here" command -v ccx
     runner rust cargo test --quiet --no-fail-fast
 }
 

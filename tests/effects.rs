@@ -194,7 +194,7 @@ fn maxwell_branches_stiffen_vibration_and_not_rest() {
 
 #[test]
 fn softening_deflects_the_block_further() {
-    // At 40 % loss the deflection under the same force grows by up to 1/0.6.
+    // G₀/G_∞ = 2: the deflection under the same force grows by up to 2.
     let edge = |p: &Params| mean(&slid(p, 0.3, LOAD, 8e-3), |o| o.run_in_displacement[0].abs());
     for form in 0..2 {
         let ratio = edge(&with("payne_softening", form, None)) / edge(&Params::default());

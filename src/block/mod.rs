@@ -32,6 +32,8 @@ pub struct TreadBlock {
     stations: Stations,
     memory: Memory,
     wear_mass: f64,
+    /// Energy of the contact springs that wear has released since the ledger was opened [J].
+    wear_energy: f64,
     /// Prescribed motion at the time reached.
     motion: Kinematics,
     outputs: Outputs,
@@ -68,6 +70,7 @@ impl TreadBlock {
             integrator,
             memory: Memory::new(params, nodes),
             wear_mass: 0.0,
+            wear_energy: 0.0,
             motion: Kinematics::default(),
             outputs: Outputs::default(),
         };
@@ -103,6 +106,7 @@ impl TreadBlock {
         let start = self.state.time;
         let (law, density) = (&self.params.wear, self.params.rubber.density);
         let (area, wear_mass) = (&self.face.area, &mut self.wear_mass);
+        let wear_energy = &mut self.wear_energy;
         let (effects, memory, linear) = (&self.params.effect, &mut self.memory, &self.linear);
         let outcome = self.integrator.advance(
             &self.linear,
@@ -111,7 +115,9 @@ impl TreadBlock {
             h,
             segment,
             &mut |step, stage, state| {
-                *wear_mass += wear_off(law, density, area, step, stage, &mut state.worn);
+                let [mass, energy] = wear_off(law, density, area, step, stage, &mut state.worn);
+                *wear_mass += mass;
+                *wear_energy += energy;
                 memory.after_step(effects, linear, area, step, stage, state);
             },
         );
@@ -172,12 +178,13 @@ impl TreadBlock {
     /// Opens an energy ledger at the state as it stands.
     pub fn open_ledger(&mut self) {
         let compression = self.compression();
+        self.wear_energy = 0.0;
         self.integrator.open_ledger(&self.linear, &self.face, &self.state, &compression);
     }
 
     /// The energy ledger, if one was opened.
-    pub fn ledger(&self) -> Option<&Ledger> {
-        self.integrator.ledger()
+    pub fn ledger(&self) -> Option<Ledger> {
+        self.integrator.ledger().map(|ledger| Ledger { wear: self.wear_energy, ..*ledger })
     }
 
     /// Changes tunable parameters while the block moves.
@@ -234,7 +241,8 @@ impl TreadBlock {
     }
 }
 
-/// Wears the nodes over a step of `h` [s]; returns the mass worn off [kg].
+/// Wears the nodes over a step of `h` [s]; returns the mass worn off [kg] and the energy of the contact
+/// springs [J] that goes with it: pressure times what is lost in depth.
 fn wear_off(
     law: &Wear,
     density: f64,
@@ -242,17 +250,17 @@ fn wear_off(
     h: f64,
     stage: &Stage,
     worn: &mut [f64],
-) -> f64 {
+) -> [f64; 2] {
     let traction = &stage.traction;
-    let mut mass = 0.0;
+    let (mut mass, mut energy) = (0.0, 0.0);
     for i in 0..worn.len() {
         if traction.pressure[i] > 0.0 {
             let mu = traction.tangential[i] / (traction.pressure[i] * area[i]);
-            let depth =
-                h * wear::depth_rate(law, density, mu, traction.pressure[i], stage.slip[i]);
+            let depth = h * wear::depth_rate(law, density, mu, traction.pressure[i], stage.slip[i]);
             worn[i] += depth;
             mass += depth * density * area[i];
+            energy += depth * traction.pressure[i] * area[i];
         }
     }
-    mass
+    [mass, energy]
 }

@@ -6,7 +6,7 @@ use super::output::{self, Done, Stop};
 use crate::error::Fault;
 use crate::params::{load, Params};
 use crate::study::identify::run::{identify, Progress, Task};
-use crate::study::identify::space;
+use crate::study::identify::{report, space};
 use crate::study::paper::{Column, TABLE_1};
 use crate::study::slides::Reductions;
 
@@ -80,6 +80,9 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
         })
     })?;
     write(&best, &found.params)?;
+    let report = report::markdown(&task, &found);
+    output::to(Some(&arguments.out.join("report.md")), report.as_bytes())?;
+    eprint!("{report}");
     Ok(Done::Fine)
 }
 

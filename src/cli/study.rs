@@ -19,7 +19,7 @@ Examples:
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = EXAMPLES)]
 pub struct Arguments {
-    /// Study to run: table-1, fig-4 ... or all
+    /// Study to run: fig-2 to fig-9, table-1, or all
     study: String,
     /// Folder for CSV, SVG and HTML
     #[arg(long, default_value = "out/paper")]

@@ -24,8 +24,8 @@ impl Form {
 /// γ = √(2U/(G V)) from the elastic energy U at full stiffness.
 ///
 /// `kraus` (Kraus, Rubber Chem. Technol. 51, 1978, with m = 0.55): f = 1 − s·x/(1 + x),
-/// x = (γ_a/γ_c)^(2m), γ_a the largest strain of the last `MEMORY`. `instantaneous`:
-/// f = 1 − s·γ/(γ + γ_c), smoothed over `SMOOTHING`. γ_r is the strain at which Young's modulus
+/// x = (γ_a/γ_c)^(2m), γ_a the largest strain of the last 2 ms. `instantaneous`:
+/// f = 1 − s·γ/(γ + γ_c), smoothed over 30 µs. s = d/(1 + d) with the drop d = G₀/G_∞ − 1. γ_r is the strain at which Young's modulus
 /// was measured; the block is settled at that modulus.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PayneSoftening {
@@ -33,8 +33,8 @@ pub struct PayneSoftening {
     pub enabled: bool,
     /// Which strain softens.
     pub form: Form,
-    /// Loss s of stiffness from small to large strain [-].
-    pub loss: f64,
+    /// Stiffness at small over that at large strain less 1, d = G₀/G_∞ − 1 [-].
+    pub drop: f64,
     /// Strain γ_c of half the loss [-].
     pub strain: f64,
     /// Strain γ_r at which Young's modulus was measured [-].
@@ -46,8 +46,8 @@ impl Default for PayneSoftening {
         Self {
             enabled: false,
             form: Form::Kraus,
-            loss: 0.4,
-            strain: 0.01,
+            drop: 1.0,
+            strain: 8e-3,
             reference_strain: 0.0,
         }
     }
@@ -93,7 +93,7 @@ impl PayneSoftening {
             Form::Kraus => ratio.powf(KRAUS_EXPONENT),
             Form::Instantaneous => ratio,
         };
-        1.0 - self.loss * x / (1.0 + x)
+        1.0 - self.drop / (1.0 + self.drop) * x / (1.0 + x)
     }
 }
 
@@ -108,7 +108,7 @@ const FORMS: &[Item] = &[
 pub static PARAMS: &[ParamSpec] = &[
     bool_param!("effect.payne_softening.enabled", effect.payne_softening.enabled, Fixed, "Payne effect: stiffness falls with the amplitude of strain"),
     enum_param!("effect.payne_softening.form", effect.payne_softening.form, Form, "PayneSofteningForm", FORMS, Fixed, "Which strain softens"),
-    real_param!("effect.payne_softening.loss", effect.payne_softening.loss, "1", None, 0.0, 0.95, 0.4, Tunable, "Loss of stiffness from small to large strain; 0: none"),
+    real_param!("effect.payne_softening.drop", effect.payne_softening.drop, "1", None, 0.0, 50.0, 1.0, Tunable, "Stiffness at small over that at large strain, less 1; 0: none"),
     real_param!("effect.payne_softening.strain", effect.payne_softening.strain, "1", PERCENT, 1e-5, 1.0, 0.01, Tunable, "Strain of half the loss"),
     real_param!("effect.payne_softening.reference_strain", effect.payne_softening.reference_strain, "1", PERCENT, 0.0, 1.0, 0.001, Tunable, "Strain at which Young's modulus was measured"),
 ];
@@ -121,15 +121,15 @@ pub const FIT: FitSpec = FitSpec {
         FitForm {
             name: "kraus",
             params: &[
-                log("effect.payne_softening.loss", 0.4, 0.5),
-                log("effect.payne_softening.strain", 0.01, 0.8),
+                log("effect.payne_softening.drop", 1.0, 0.8),
+                log("effect.payne_softening.strain", 8e-3, 0.7),
             ],
         },
         FitForm {
             name: "instantaneous",
             params: &[
-                log("effect.payne_softening.loss", 0.4, 0.5),
-                log("effect.payne_softening.strain", 0.01, 0.8),
+                log("effect.payne_softening.drop", 1.0, 0.8),
+                log("effect.payne_softening.strain", 8e-3, 0.7),
             ],
         },
     ],
@@ -141,12 +141,12 @@ mod tests {
 
     #[test]
     fn half_the_loss_is_there_at_the_critical_strain() {
-        // Closed form: x = 1 gives 1 − s/2.
+        // Closed form: x = 1 and s = 1/2 give 1 − 1/4.
         for form in Form::ALL {
             let on = PayneSoftening { form, ..PayneSoftening::default() };
-            assert!((on.factor(0.01) - 0.8).abs() < 1e-15);
+            assert!((on.factor(8e-3) - 0.75).abs() < 1e-15);
             assert_eq!(on.factor(0.0), 1.0);
-            assert_eq!(PayneSoftening { loss: 0.0, ..on }.factor(0.05), 1.0);
+            assert_eq!(PayneSoftening { drop: 0.0, ..on }.factor(0.05), 1.0);
         }
     }
 

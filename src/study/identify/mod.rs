@@ -3,5 +3,6 @@
 pub mod cma;
 pub mod gauss_newton;
 pub mod objective;
+pub mod report;
 pub mod run;
 pub mod space;

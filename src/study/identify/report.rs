@@ -1,0 +1,62 @@
+//! What an identification says about its parameters: values, uncertainty, what cannot be told apart.
+
+use std::fmt::Write;
+
+use super::run::{Identified, Task};
+use super::space::{get, Unknown};
+
+/// Components of a direction that are worth naming.
+const NAMED: f64 = 0.3;
+/// Standard deviation, in unit intervals, from which on a direction is not determined: a uniform
+/// distribution over the whole range has 0.29.
+const UNDETERMINED: f64 = 0.15;
+
+/// The report as Markdown.
+pub fn markdown(task: &Task, found: &Identified) -> String {
+    let mut out = String::from("# Identification from Table 1\n\n");
+    let columns: Vec<&str> = task.columns.iter().map(|c| c.name).collect();
+    let _ = writeln!(out, "Columns: {}. Cost {:.3}.\n", columns.join(", "), found.cost);
+    let _ = writeln!(
+        out,
+        "Uncertainty: one standard deviation from the Jacobian of the residuals at the end of the local \
+         search and the scatter that the fit leaves ({:.1} %), together with the range of the search as \
+         prior knowledge.\n",
+        100.0 * found.local.variance().sqrt()
+    );
+    out.push_str("| parameter | value | from | to | share of the range |\n|---|---|---|---|---|\n");
+    for ((unknown, x), deviation) in
+        task.unknowns.iter().zip(&found.local.x).zip(found.local.deviations())
+    {
+        let _ = writeln!(
+            out,
+            "| `{}` | {:.4e} | {:.4e} | {:.4e} | {:.1} % |",
+            unknown.name,
+            get(&found.params, unknown.name),
+            unknown.value(x - deviation),
+            unknown.value(x + deviation),
+            100.0 * deviation
+        );
+    }
+    out.push_str("\n## Directions of the parameters, the best determined first\n\n");
+    out.push_str("Components in unit intervals of the search ranges.\n\n");
+    for direction in found.local.directions() {
+        let verdict = if direction.deviation < UNDETERMINED { "pinned down" } else { "not told apart" };
+        let _ = writeln!(
+            out,
+            "- {verdict} (deviation {:.3}): {}",
+            direction.deviation,
+            combination(&task.unknowns, &direction.components)
+        );
+    }
+    out
+}
+
+/// The main parts of a direction in words.
+fn combination(unknowns: &[Unknown], components: &[f64]) -> String {
+    let mut parts: Vec<(f64, &str)> =
+        components.iter().copied().zip(unknowns.iter().map(|u| u.name)).collect();
+    parts.retain(|(c, _)| c.abs() >= NAMED);
+    parts.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
+    let words: Vec<String> = parts.iter().map(|(c, name)| format!("{c:+.2} {name}")).collect();
+    words.join(" ")
+}
