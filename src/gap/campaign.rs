@@ -120,6 +120,18 @@ pub struct Record {
     pub channel: [Option<Vec<f64>>; CHANNEL_COUNT],
 }
 
+impl Record {
+    /// The record up to `end` [s].
+    pub fn until(&self, end: f64) -> Self {
+        let count = self.time.iter().take_while(|t| **t <= end + 1e-6).count();
+        let cut = |column: &Vec<f64>| column[..count].to_vec();
+        Self {
+            time: cut(&self.time),
+            channel: std::array::from_fn(|c| self.channel[c].as_ref().map(cut)),
+        }
+    }
+}
+
 /// A run with its data.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {

@@ -9,8 +9,10 @@ use super::spectrum::{amplitude, fundamental, hann, mean, power, Complex};
 
 /// Samples averaged in the onset.
 const BIN: usize = 4;
-/// Bins of the onset; 2.56 ms at 25 kHz.
-const BINS: usize = 16;
+/// Bins of the onset; 4.8 ms at 25 kHz.
+const BINS: usize = 30;
+/// Samples of a part, about.
+const PART: usize = 180;
 /// Samples of the ring-down that are compared one by one.
 const RING_SAMPLES: usize = 100;
 /// Harmonics compared per channel.
@@ -108,8 +110,9 @@ pub fn of_run(plan: &Plan, spec: &RunSpec, run: usize, record: &Record) -> Vec<F
         return cutter.out;
     }
     cutter.onset();
-    let parts = if spec.kind == RunKind::SpeedRamp { 4 } else { 3 };
-    let (first, last) = (BIN * BINS - 14, record.time.len());
+    // After the start, in parts of about 7 ms; a short record is one part.
+    let (first, last) = (40, record.time.len());
+    let parts = (last.saturating_sub(first) / PART).max(1);
     let length = last.saturating_sub(first) / parts;
     for part in 0..parts {
         if length > 40 {
@@ -145,8 +148,9 @@ impl Cutter<'_> {
         for channel in 0..CHANNEL_COUNT {
             let Some(values) = self.record.channel[channel].as_ref() else { continue };
             let count = values.len();
-            let centre = values.iter().sum::<f64>() / count as f64;
-            let size = rms(values, centre, 0, count);
+            let first = count.min(BIN * BINS);
+            let centre = values[..first].iter().sum::<f64>() / first as f64;
+            let size = rms(values, centre, 0, first);
             let noise = self.noise(channel) / (BIN as f64).sqrt();
             for bin in 0..BINS.min(count / BIN) {
                 let piece = &values[bin * BIN..(bin + 1) * BIN];

@@ -8,9 +8,9 @@ use nalgebra::DMatrix;
 /// Whitened severities from which an effect is started.
 const STARTS: [f64; 2] = [-1.2, 0.3];
 /// Effects that are refined with Jacobians of their own.
-const REFINED: usize = 4;
+const REFINED: usize = 3;
 /// Effects of which pairs are made.
-const PAIRED: usize = 4;
+const PAIRED: usize = 3;
 
 /// A fitted hypothesis.
 #[derive(Clone, Debug)]
@@ -58,15 +58,15 @@ const fn effort(steps: usize, refresh: usize, heat: f64, smooth_only: bool) -> E
 }
 
 /// From the datasheet to about the right place.
-const FAR: [Effort; 2] = [effort(3, 1, 10.0, true), effort(3, 2, 3.0, true)];
+const FAR: [Effort; 2] = [effort(2, 1, 10.0, true), effort(2, 1, 4.0, true)];
 /// From there to the optimum.
-const HOME: [Effort; 2] = [effort(3, 2, 4.0, false), effort(5, 2, 1.0, false)];
+const HOME: [Effort; 2] = [effort(2, 9, 4.0, false), effort(4, 2, 1.0, false)];
 /// Places looked at in between.
-const DRAWS: usize = 24;
+const DRAWS: usize = 16;
 /// From the base model's optimum to that of an effect, with an inherited Jacobian.
-const NEAR: [Effort; 2] = [effort(3, 9, 3.0, false), effort(3, 9, 1.0, false)];
+const NEAR: [Effort; 2] = [effort(2, 9, 3.0, false), effort(3, 9, 1.0, false)];
 /// With Jacobians of its own.
-const FINE: [Effort; 2] = [effort(3, 2, 2.0, false), effort(4, 2, 1.0, false)];
+pub const FINE: [Effort; 2] = [effort(2, 2, 2.0, false), effort(3, 2, 1.0, false)];
 /// Once more.
 const AGAIN: Effort = effort(4, 2, 1.0, false);
 
@@ -127,12 +127,8 @@ pub fn fit_all(
 /// The base model's optimum from `start`: approach, look around, descend; twice.
 pub fn recalibrate(bench: &Bench, start: Fit, of: &[usize]) -> Fit {
     let mut best = approach(bench, start, of, &FAR);
-    for heat in [3.0, 1.5] {
-        let view = View { heat, smooth_only: false };
-        best = explore(bench, best, of, DRAWS, view);
-        best = approach(bench, best, of, &HOME);
-    }
-    best
+    best = explore(bench, best, of, DRAWS, View { heat: 3.0, smooth_only: false });
+    approach(bench, best, of, &HOME)
 }
 
 /// The free block alone tells modulus and damping, and costs next to nothing.

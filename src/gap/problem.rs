@@ -78,6 +78,8 @@ pub struct Bench {
     /// Runs in the order of the data vector.
     pub runs: Vec<RunSpec>,
     simulator: Simulator,
+    /// Records are compared up to this time [s].
+    horizon: f64,
     /// Measured features, run after run.
     pub measured: Vec<Vec<Feature>>,
     /// 1/σ per feature.
@@ -94,18 +96,22 @@ pub struct Bench {
 pub type Residuals = Vec<Vec<f64>>;
 
 impl Bench {
-    /// Cuts the campaign's data into features.
+    /// Cuts the campaign's data up to `horizon` [s] into features.
     ///
     /// # Errors
     /// What stops the reduction of the block.
-    pub fn new(campaign: &Campaign, specs: &'static [FitSpec]) -> Result<Self, Fault> {
+    pub fn new(
+        campaign: &Campaign,
+        specs: &'static [FitSpec],
+        horizon: f64,
+    ) -> Result<Self, Fault> {
         let plan = campaign.plan.clone();
         let runs: Vec<RunSpec> = campaign.runs.iter().map(|r| r.spec.clone()).collect();
         let measured: Vec<Vec<Feature>> = campaign
             .runs
             .iter()
             .enumerate()
-            .map(|(i, run)| features::of_run(&plan, &run.spec, i, &run.record))
+            .map(|(i, run)| features::of_run(&plan, &run.spec, i, &run.record.until(horizon)))
             .collect();
         let sigma = |f: &Feature| 1.0 / floor::uncertainty(f);
         let inverse = measured.iter().map(|run| run.iter().map(sigma).collect()).collect();
@@ -121,7 +127,7 @@ impl Bench {
             .collect();
         let simulator = Simulator::new(&plan)?;
         let simulations = AtomicUsize::new(0);
-        Ok(Self { plan, runs, simulator, measured, inverse, weight, specs, base, simulations })
+        Ok(Self { plan, runs, simulator, horizon, measured, inverse, weight, specs, base, simulations })
     }
 
     /// Number of simulations so far.
@@ -180,7 +186,7 @@ impl Bench {
         self.simulations.fetch_add(1, Ordering::Relaxed);
         let spec = &self.runs[run];
         let measured = &self.measured[run];
-        let Ok(mut record) = self.simulator.run(params, spec) else {
+        let Ok(mut record) = self.simulator.run(params, spec, self.horizon) else {
             return vec![FAILED; measured.len()];
         };
         for (channel, slot) in record.channel.iter_mut().enumerate() {
@@ -208,7 +214,7 @@ impl Bench {
         spec: &RunSpec,
     ) -> Result<super::campaign::Record, Fault> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
-        self.simulator.run(params, spec)
+        self.simulator.run(params, spec, spec.duration_s)
     }
 
     /// Weighted mean loss over the runs that `residuals` has: about 1 where the model is as good as
