@@ -16,7 +16,7 @@ use std::time::Instant;
 
 /// Fits look at this much of every run [s]: before small errors of the frequency add up to another
 /// phase, the residuals follow the parameters without jumps; and it is several times cheaper.
-const FIT_HORIZON: f64 = 5e-3;
+const FIT_HORIZON: f64 = 2.9e-3;
 /// Held-out runs are judged over their whole length.
 const FULL_HORIZON: f64 = 1.0;
 
@@ -112,7 +112,7 @@ pub fn diagnose(
     let bench = Bench::new(&campaign, crate::effects::fit_specs(), FIT_HORIZON)?;
     let all: Vec<usize> = (0..bench.runs.len()).collect();
     let held = if settings.hold_out { held_out::choose(&bench.runs) } else { Vec::new() };
-    let seen: Vec<usize> = all.iter().copied().filter(|r| !held.contains(r)).collect();
+    let seen = held_out::to_fit(&bench.runs, &held, FIT_HORIZON);
     let fits = hypotheses::fit_all(&bench, &seen, settings.method, progress);
     let weighed = decide::weigh(&fits);
     let decision = decide::decide(&bench, &fits, &weighed);

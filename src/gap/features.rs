@@ -9,8 +9,8 @@ use super::spectrum::{amplitude, fundamental, hann, mean, power, Complex};
 
 /// Samples averaged in the onset.
 const BIN: usize = 4;
-/// Bins of the onset; 4.8 ms at 25 kHz.
-const BINS: usize = 30;
+/// Bins of the onset; 2.88 ms at 25 kHz.
+const BINS: usize = 18;
 /// Samples of a part, about.
 const PART: usize = 180;
 /// Samples of the ring-down that are compared one by one.
@@ -115,7 +115,7 @@ pub fn of_run(plan: &Plan, spec: &RunSpec, run: usize, record: &Record) -> Vec<F
     let parts = (last.saturating_sub(first) / PART).max(1);
     let length = last.saturating_sub(first) / parts;
     for part in 0..parts {
-        if length > 40 {
+        if length > 50 {
             cutter.part(part, first + part * length, first + (part + 1) * length);
         }
     }

@@ -1,7 +1,7 @@
 //! Levenberg-Marquardt in whitened parameters with Gaussian priors, robust loss, and Jacobians that
 //! are kept up to date by Broyden's rule between the simulations.
 
-use super::features::Aspect;
+use super::features::{Aspect, Key};
 use super::problem::{loss, robust_weight, Bench, Choice, Residuals};
 use nalgebra::{DMatrix, DVector};
 
@@ -43,16 +43,26 @@ pub struct Effort {
 pub struct View {
     /// Residuals are divided by this.
     pub heat: f64,
-    /// Only onset, means and ring-down, which follow the parameters without jumps.
-    pub smooth_only: bool,
+    /// Only ring-down and the onset up to this part, which follow the parameters without jumps.
+    pub onset_parts: Option<usize>,
 }
 
 impl View {
     /// Everything at its own uncertainty.
-    pub const PLAIN: Self = Self { heat: 1.0, smooth_only: false };
+    pub const PLAIN: Self = Self { heat: 1.0, onset_parts: None };
 
-    fn counts(&self, aspect: Aspect) -> bool {
-        !self.smooth_only || matches!(aspect, Aspect::Onset | Aspect::Mean | Aspect::Ringdown)
+    fn counts(&self, key: &Key) -> bool {
+        match self.onset_parts {
+            None => true,
+            Some(parts) => {
+                key.aspect == Aspect::Ringdown || key.aspect == Aspect::Onset && key.part < parts
+            }
+        }
+    }
+
+    /// Weight of the prior: it cools with the data.
+    fn prior(&self) -> f64 {
+        1.0 / (self.heat * self.heat)
     }
 }
 
@@ -63,62 +73,6 @@ pub fn approach(bench: &Bench, mut fit: Fit, of: &[usize], schedule: &[Effort]) 
         fit.jacobian = fit.jacobian.filter(|_| effort.refresh > effort.steps);
     }
     fit
-}
-
-/// Looks around an optimum in the directions that its data leave open, and goes to the best place
-/// found: a limit cycle of another kind is not reached by descending.
-pub fn explore(bench: &Bench, fit: Fit, of: &[usize], draws: usize, view: View) -> Fit {
-    let size = fit.x.len();
-    let jacobian = match &fit.jacobian {
-        Some(jacobian) => jacobian.clone(),
-        None => columns(bench, &fit, &(0..size).collect::<Vec<_>>(), of),
-    };
-    let (r, w) = weighted(bench, &fit.residuals, view);
-    let (matrix, _) = normal(&(&jacobian / view.heat), &(&r / view.heat), &w, &fit.x);
-    let Some(factor) = matrix.cholesky() else { return fit };
-    let upper = factor.l().transpose();
-    let mut noise = Noise(0x5eed_0123_4567_89ab);
-    let points: Vec<Vec<f64>> = (0..draws)
-        .map(|k| {
-            let z = DVector::from_fn(size, |_, _| noise.normal());
-            // Near and far in turn.
-            let reach = REACH[k % REACH.len()];
-            let step = upper.solve_upper_triangular(&z).unwrap_or_else(|| DVector::zeros(size));
-            let shift = step.iter().map(|s| (reach * s).clamp(-1.5, 1.5));
-            fit.x.iter().zip(shift).map(|(x, s)| (x + s).clamp(-2.5, 2.5)).collect()
-        })
-        .collect();
-    let found = bench.residuals(&fit.added, &points, of);
-    let mut best = fit;
-    let mut lowest = objective(bench, &best.x, &best.residuals, view);
-    for (x, residuals) in points.into_iter().zip(found) {
-        let here = objective(bench, &x, &residuals, view);
-        if here < lowest {
-            lowest = here;
-            let objective = objective(bench, &x, &residuals, View::PLAIN);
-            best = Fit { added: best.added, x, residuals, objective, jacobian: None };
-        }
-    }
-    best
-}
-
-/// How far the draws of [`explore`] go, in standard deviations.
-const REACH: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
-
-/// Deterministic normal numbers.
-struct Noise(u64);
-
-impl Noise {
-    fn uniform(&mut self) -> f64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    }
-
-    fn normal(&mut self) -> f64 {
-        (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
-    }
 }
 
 /// Evaluates a point.
@@ -133,7 +87,7 @@ fn objective(bench: &Bench, x: &[f64], residuals: &Residuals, view: View) -> f64
     let weights = of_weights(bench, residuals, view);
     let data: f64 =
         residuals.iter().flatten().zip(weights).map(|(r, w)| w * loss(*r / view.heat)).sum();
-    data + x.iter().map(|v| v * v).sum::<f64>()
+    data + view.prior() * x.iter().map(|v| v * v).sum::<f64>()
 }
 
 /// Columns `which` of the Jacobian at `fit` by forward differences.
@@ -186,7 +140,7 @@ pub fn improve(bench: &Bench, mut fit: Fit, of: &[usize], effort: Effort) -> Fit
         }
         let Some(jacobian) = fit.jacobian.as_ref() else { break };
         let (r, w) = weighted(bench, &fit.residuals, view);
-        let step = newton(&(jacobian / view.heat), &(&r / view.heat), &w, &fit.x, damping);
+        let step = newton(jacobian, &r, &w, &fit.x, damping);
         let x: Vec<f64> = fit
             .x
             .iter()
@@ -226,7 +180,7 @@ fn of_weights<'a>(
     let present = residuals.iter().zip(bench.weight.iter().zip(&bench.measured));
     present.filter(|(r, _)| !r.is_empty()).flat_map(move |(_, (weights, features))| {
         weights.iter().zip(features).map(move |(w, feature)| {
-            if view.counts(feature.key.aspect) {
+            if view.counts(&feature.key) {
                 *w
             } else {
                 0.0

@@ -43,6 +43,21 @@ pub fn choose(runs: &[RunSpec]) -> Vec<usize> {
     chosen
 }
 
+/// Runs to be fitted: all but the held-out ones, repetitions, and slow ramps that are as good as at
+/// rest within `horizon` [s].
+pub fn to_fit(runs: &[RunSpec], held_out: &[usize], horizon: f64) -> Vec<usize> {
+    let same = |a: &RunSpec, b: &RunSpec| RunSpec { file: String::new(), ..a.clone() }
+        == RunSpec { file: String::new(), ..b.clone() };
+    let slow = |r: &RunSpec| {
+        let gain = r.road_speed_end_m_s.unwrap_or(0.0).abs() * horizon / r.duration_s;
+        r.kind == RunKind::SpeedRamp && r.road_speed_m_s.abs() + gain < 0.15
+    };
+    (0..runs.len())
+        .filter(|r| !held_out.contains(r) && !slow(&runs[*r]))
+        .filter(|r| !runs[..*r].iter().any(|earlier| same(earlier, &runs[*r])))
+        .collect()
+}
+
 /// G² of single runs: weighted mean square of the residuals.
 pub fn squares(bench: &Bench, residuals: &Residuals, of: &[usize]) -> Vec<f64> {
     of.iter()

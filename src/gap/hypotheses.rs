@@ -1,12 +1,14 @@
 //! Which effects are asked, and how well each explains the data after the same effort.
 
 use super::campaign::RunKind;
-use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
+use super::fit::{self, approach, columns, evaluate, improve, Effort, Fit, View};
 use super::problem::{Bench, Choice};
 use nalgebra::DMatrix;
 
 /// Whitened severities from which an effect is started.
 const STARTS: [f64; 2] = [-1.2, 0.3];
+/// Effects of which all forms are tried.
+const FAMILIES: usize = 5;
 /// Effects that are refined with Jacobians of their own.
 const REFINED: usize = 3;
 /// Effects of which pairs are made.
@@ -53,22 +55,19 @@ impl Method {
     pub const FULL: Self = Self { recalibrate: true, equal_effort: true, families: true };
 }
 
-const fn effort(steps: usize, refresh: usize, heat: f64, smooth_only: bool) -> Effort {
-    Effort { steps, refresh, view: View { heat, smooth_only } }
+const fn effort(steps: usize, refresh: usize, heat: f64, onset_parts: Option<usize>) -> Effort {
+    Effort { steps, refresh, view: View { heat, onset_parts } }
 }
 
-/// From the datasheet to about the right place.
-const FAR: [Effort; 2] = [effort(2, 1, 10.0, true), effort(2, 1, 4.0, true)];
-/// From there to the optimum.
-const HOME: [Effort; 2] = [effort(2, 9, 4.0, false), effort(4, 2, 1.0, false)];
-/// Places looked at in between.
-const DRAWS: usize = 16;
+/// From the datasheet to the optimum of the base model: the first two milliseconds, then all.
+const FAR: [Effort; 3] =
+    [effort(3, 1, 5.0, Some(2)), effort(2, 1, 3.0, None), effort(2, 2, 1.0, None)];
 /// From the base model's optimum to that of an effect, with an inherited Jacobian.
-const NEAR: [Effort; 2] = [effort(2, 9, 3.0, false), effort(3, 9, 1.0, false)];
+const NEAR: [Effort; 2] = [effort(2, 9, 3.0, None), effort(2, 9, 1.0, None)];
 /// With Jacobians of its own.
-pub const FINE: [Effort; 2] = [effort(2, 2, 2.0, false), effort(3, 2, 1.0, false)];
+pub const FINE: [Effort; 1] = [effort(3, 2, 1.0, None)];
 /// Once more.
-const AGAIN: Effort = effort(4, 2, 1.0, false);
+const AGAIN: Effort = effort(2, 9, 1.0, None);
 
 /// Fits everything on the runs `of`; `progress` is told the share done.
 pub fn fit_all(
@@ -91,18 +90,23 @@ pub fn fit_all(
     let mut singles = Vec::new();
     let mut response = Vec::new();
     for (effect, spec) in bench.specs.iter().enumerate() {
-        let done = 0.15 + 0.35 * effect as f64 / bench.specs.len() as f64;
+        let done = 0.15 + 0.30 * effect as f64 / bench.specs.len() as f64;
         progress(done, &format!("fitting {}", spec.effect));
-        let forms = if method.families { spec.forms.len() } else { 1 };
-        let mut best: Option<Fit> = None;
-        for form in 0..forms {
-            let (found, tried) = start_effect(bench, &base, Choice { effect, form }, of, method);
-            if form == 0 {
-                response.push(tried);
+        let (found, tried) = start_effect(bench, &base, Choice { effect, form: 0 }, of, method);
+        response.push(tried);
+        singles.push(level(bench, found, of));
+    }
+    if method.families {
+        progress(0.45, "other forms of the best effects");
+        for at in ranked(&singles).into_iter().take(FAMILIES) {
+            let effect = singles[at].added[0].effect;
+            for form in 1..bench.specs[effect].forms.len() {
+                let (found, _) = start_effect(bench, &base, Choice { effect, form }, of, method);
+                if found.objective < singles[at].fit.objective {
+                    singles[at] = level(bench, found, of);
+                }
             }
-            best = better(best, found);
         }
-        singles.extend(best.map(|fit| level(bench, fit, of)));
     }
     let order = ranked(&singles);
     for (k, at) in order.iter().take(REFINED).enumerate() {
@@ -124,11 +128,9 @@ pub fn fit_all(
     Fits { base: level(bench, base, of), singles, pairs, response }
 }
 
-/// The base model's optimum from `start`: approach, look around, descend; twice.
+/// The base model's optimum from `start`.
 pub fn recalibrate(bench: &Bench, start: Fit, of: &[usize]) -> Fit {
-    let mut best = approach(bench, start, of, &FAR);
-    best = explore(bench, best, of, DRAWS, View { heat: 3.0, smooth_only: false });
-    approach(bench, best, of, &HOME)
+    approach(bench, start, of, &FAR)
 }
 
 /// The free block alone tells modulus and damping, and costs next to nothing.
@@ -139,7 +141,7 @@ pub fn struck(bench: &Bench, start: Vec<f64>, of: &[usize]) -> Vec<f64> {
         return start;
     }
     let fit = evaluate(bench, &[], start, &rung);
-    approach(bench, fit, &rung, &[effort(4, 1, 5.0, false), effort(4, 1, 1.0, false)]).x
+    approach(bench, fit, &rung, &[effort(4, 1, 5.0, None), effort(4, 1, 1.0, None)]).x
 }
 
 fn full_jacobian(bench: &Bench, fit: &Fit, of: &[usize]) -> DMatrix<f64> {

@@ -26,11 +26,11 @@ pub const DATASHEET: [(&str, &str); 12] = [
 ];
 
 /// Elements along and up.
-const FIT_ELEMENTS: (usize, usize) = (5, 3);
+const FIT_ELEMENTS: (usize, usize) = (6, 4);
 /// Fixed-interface modes up to this frequency [Hz].
-const FIT_BOUND: f64 = 10e3;
+const FIT_BOUND: f64 = 14e3;
 /// Tolerance of the integrator.
-const FIT_TOLERANCE: f64 = 5e-3;
+const FIT_TOLERANCE: f64 = 3e-3;
 /// Height above the road at which the struck block hangs [m]; the measured approach is minus this.
 const HANGING: f64 = 1.0;
 /// Speed of the blow at the tread face [m/s].
