@@ -11,6 +11,10 @@ use super::spectrum::{amplitude, fundamental, hann, mean, power, Complex};
 const BIN: usize = 4;
 /// Bins of the onset; 2.88 ms at 25 kHz.
 const BINS: usize = 18;
+/// Snap-outs looked at.
+const SNAPS: usize = 2;
+/// Share of its travel that the edge must fall back to have snapped.
+const SNAP_SHARE: f64 = 0.2;
 /// Samples of a part, about.
 const PART: usize = 180;
 /// Samples of the ring-down that are compared one by one.
@@ -25,6 +29,8 @@ const STICK_SPEED: f64 = 0.03;
 pub enum Aspect {
     /// Waveform of the first milliseconds.
     Onset,
+    /// First snap-out of the edge: when, from where, to where.
+    Snap,
     /// Mean over a part of the run.
     Mean,
     /// Logarithm of the stick-slip frequency.
@@ -41,8 +47,9 @@ pub enum Aspect {
 
 impl Aspect {
     /// All, in order.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Onset,
+        Self::Snap,
         Self::Mean,
         Self::Frequency,
         Self::Cycle,
@@ -55,6 +62,7 @@ impl Aspect {
     pub const fn phase(self) -> &'static str {
         match self {
             Self::Onset => "onset",
+            Self::Snap => "snap-out",
             Self::Mean => "settled mean",
             Self::Frequency => "settled frequency",
             Self::Cycle => "settled cycle",
@@ -110,6 +118,7 @@ pub fn of_run(plan: &Plan, spec: &RunSpec, run: usize, record: &Record) -> Vec<F
         return cutter.out;
     }
     cutter.onset();
+    cutter.snap();
     // After the start, in parts of about 7 ms; a short record is one part.
     let (first, last) = (40, record.time.len());
     let parts = (last.saturating_sub(first) / PART).max(1);
@@ -163,6 +172,37 @@ impl Cutter<'_> {
                     size * (1.0 + late * late).sqrt(),
                 ]);
             }
+        }
+    }
+
+    /// The edge is dragged along until it snaps back: time, place and depth follow the parameters
+    /// smoothly where the waveform only says that it is somewhere else.
+    fn snap(&mut self) {
+        let Some(x) = self.record.channel[DISPLACEMENT].as_ref() else { return };
+        let direction = self.spec.road_speed_m_s.signum();
+        let end = x.len().min(BIN * BINS);
+        let travel = |i: usize| direction * (x[i] - x[0]);
+        let mut from = 0;
+        for part in 0..SNAPS {
+            let low = travel(from);
+            let (mut top, mut at) = (low, from);
+            for i in from..end {
+                if travel(i) > top {
+                    (top, at) = (travel(i), i);
+                } else if top - travel(i) > SNAP_SHARE * top && at > from + 4 {
+                    break;
+                }
+            }
+            let last = end.min(at + 10);
+            let bottom = (at..last)
+                .min_by(|a, b| travel(*a).total_cmp(&travel(*b)))
+                .unwrap_or(at);
+            let time = (at.max(1) as f64 * self.step).ln();
+            let depth = travel(bottom) / top.max(1e-9);
+            self.push(DISPLACEMENT, Aspect::Snap, part, [time, 0.0, 1.0]);
+            self.push(DISPLACEMENT, Aspect::Snap, part, [top.max(1e-9).ln(), 0.0, 1.0]);
+            self.push(DISPLACEMENT, Aspect::Snap, part, [depth, 0.0, 3.0]);
+            from = bottom.min(end - 1);
         }
     }
 

@@ -55,7 +55,8 @@ impl View {
         match self.onset_parts {
             None => true,
             Some(parts) => {
-                key.aspect == Aspect::Ringdown || key.aspect == Aspect::Onset && key.part < parts
+                matches!(key.aspect, Aspect::Ringdown | Aspect::Snap)
+                    || key.aspect == Aspect::Onset && key.part < parts
             }
         }
     }

@@ -6,9 +6,11 @@ use super::features::{Aspect, Feature};
 /// Error of model and mesh relative to the size of the quantity, per aspect and channel (friction
 /// force, normal force, velocity, displacement, approach), fitted on the open campaigns without an
 /// effect (see `calibration.rs`).
-const RELATIVE: [[f64; CHANNEL_COUNT]; 7] = [
+const RELATIVE: [[f64; CHANNEL_COUNT]; 8] = [
     // onset
     [0.03, 0.05, 0.06, 0.03, 0.05],
+    // snap-out, logarithms
+    [0.02, 0.02, 0.02, 0.02, 0.02],
     // mean
     [0.02, 0.02, 0.03, 0.02, 0.04],
     // ln frequency

@@ -61,7 +61,7 @@ const fn effort(steps: usize, refresh: usize, heat: f64, onset_parts: Option<usi
 
 /// From the datasheet to the optimum of the base model: the first two milliseconds, then all.
 const FAR: [Effort; 3] =
-    [effort(3, 1, 5.0, Some(2)), effort(2, 1, 3.0, None), effort(2, 2, 1.0, None)];
+    [effort(4, 1, 5.0, Some(2)), effort(2, 1, 4.0, None), effort(3, 2, 1.0, None)];
 /// From the base model's optimum to that of an effect, with an inherited Jacobian.
 const NEAR: [Effort; 2] = [effort(2, 9, 3.0, None), effort(2, 9, 1.0, None)];
 /// With Jacobians of its own.

@@ -29,6 +29,8 @@ const CALIBRATED: [&str; 9] = [
 pub const TAIL: f64 = 4.0;
 /// The free block is asked once, but without any doubt about friction: it counts more.
 const RINGDOWN_WEIGHT: f64 = 3.0;
+/// Three numbers that say as much as a waveform.
+const SNAP_WEIGHT: f64 = 4.0;
 /// Residual of a run that could not be simulated.
 const FAILED: f64 = 30.0;
 
@@ -253,6 +255,10 @@ fn weights(features: &[Feature]) -> Vec<f64> {
     for feature in features {
         *count.entry(cell(&feature.key)).or_insert(0_usize) += 1;
     }
-    let voice = |f: &Feature| if f.key.aspect == Aspect::Ringdown { RINGDOWN_WEIGHT } else { 1.0 };
+    let voice = |f: &Feature| match f.key.aspect {
+        Aspect::Ringdown => RINGDOWN_WEIGHT,
+        Aspect::Snap => SNAP_WEIGHT,
+        _ => 1.0,
+    };
     features.iter().map(|f| voice(f) / (count[&cell(&f.key)] as f64).sqrt()).collect()
 }

@@ -48,7 +48,7 @@ pub fn map(bench: &Bench, residuals: &Residuals) -> Vec<Cell> {
             Aspect::Mean => [0.0, 0.5 * f0],
             Aspect::Frequency => [0.8 * f0, 1.2 * f0],
             Aspect::Cycle => [0.8 * f0, (4.5 * f0).min(nyquist)],
-            Aspect::Onset => [0.0, 3000.0],
+            Aspect::Onset | Aspect::Snap => [0.0, 3000.0],
             Aspect::Broadband | Aspect::Stick | Aspect::Ringdown => [0.0, nyquist],
         };
         chances.push(chance(square, (values.len() as f64).sqrt()));
