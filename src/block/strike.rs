@@ -10,7 +10,7 @@ impl TreadBlock {
     /// that does not touch the road: friction is not asked.
     pub fn strike(&mut self, speed: f64) {
         let scale = (self.params.rubber.density * self.params.block.width).sqrt();
-        for m in 0..self.linear.modes() {
+        for m in 0..self.reduction.modes() {
             let added = speed * scale * self.reduction.shear_coupling[m];
             self.state.w[m] += added;
             self.state.dw[m] -= self.linear.damping * self.linear.omega2[m] * added;

@@ -55,7 +55,8 @@ impl View {
         match self.onset_parts {
             None => true,
             Some(parts) => {
-                matches!(key.aspect, Aspect::Ringdown | Aspect::Snap)
+                key.aspect == Aspect::Ringdown
+                    || key.aspect == Aspect::Snap && key.part == 0
                     || key.aspect == Aspect::Onset && key.part < parts
             }
         }
@@ -74,6 +75,62 @@ pub fn approach(bench: &Bench, mut fit: Fit, of: &[usize], schedule: &[Effort]) 
         fit.jacobian = fit.jacobian.filter(|_| effort.refresh > effort.steps);
     }
     fit
+}
+
+/// Looks around an optimum in the directions that its data leave open, and goes to the best place
+/// found: a limit cycle of another kind is not reached by descending.
+pub fn explore(bench: &Bench, fit: Fit, of: &[usize], draws: usize, view: View) -> Fit {
+    let size = fit.x.len();
+    let jacobian = match &fit.jacobian {
+        Some(jacobian) => jacobian.clone(),
+        None => columns(bench, &fit, &(0..size).collect::<Vec<_>>(), of),
+    };
+    let (r, w) = weighted(bench, &fit.residuals, view);
+    let (matrix, _) = normal(&jacobian, &r, &w, &fit.x);
+    let Some(factor) = matrix.cholesky() else { return fit };
+    let upper = factor.l().transpose();
+    let mut noise = Noise(0x5eed_0123_4567_89ab);
+    let points: Vec<Vec<f64>> = (0..draws)
+        .map(|k| {
+            let z = DVector::from_fn(size, |_, _| noise.normal());
+            // Near and far in turn.
+            let reach = REACH[k % REACH.len()];
+            let step = upper.solve_upper_triangular(&z).unwrap_or_else(|| DVector::zeros(size));
+            let shift = step.iter().map(|s| (reach * s).clamp(-1.5, 1.5));
+            fit.x.iter().zip(shift).map(|(x, s)| (x + s).clamp(-2.5, 2.5)).collect()
+        })
+        .collect();
+    let found = bench.residuals(&fit.added, &points, of);
+    let mut best = fit;
+    let mut lowest = objective(bench, &best.x, &best.residuals, view);
+    for (x, residuals) in points.into_iter().zip(found) {
+        let here = objective(bench, &x, &residuals, view);
+        if here < lowest {
+            lowest = here;
+            let objective = objective(bench, &x, &residuals, View::PLAIN);
+            best = Fit { added: best.added, x, residuals, objective, jacobian: None };
+        }
+    }
+    best
+}
+
+/// How far the draws of [`explore`] go, in standard deviations.
+const REACH: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
+
+/// Deterministic normal numbers.
+struct Noise(u64);
+
+impl Noise {
+    fn uniform(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    }
+
+    fn normal(&mut self) -> f64 {
+        (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
+    }
 }
 
 /// Evaluates a point.

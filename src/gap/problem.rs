@@ -257,7 +257,7 @@ fn weights(features: &[Feature]) -> Vec<f64> {
     }
     let voice = |f: &Feature| match f.key.aspect {
         Aspect::Ringdown => RINGDOWN_WEIGHT,
-        Aspect::Snap => SNAP_WEIGHT,
+        Aspect::Snap if f.key.part == 0 => SNAP_WEIGHT,
         _ => 1.0,
     };
     features.iter().map(|f| voice(f) / (count[&cell(&f.key)] as f64).sqrt()).collect()
