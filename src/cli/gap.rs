@@ -74,6 +74,15 @@ enum Command {
         #[arg(long, default_value = "with-effect")]
         model: Model,
     },
+    /// Diagnose all campaigns of a folder and score those that labels.json knows
+    Check {
+        /// Folder of campaigns, with labels.json or without
+        #[arg(default_value = "shared/measurements/open")]
+        folder: PathBuf,
+        /// Folder for the answers
+        #[arg(long, short, default_value = "out/gap")]
+        out: PathBuf,
+    },
     /// Score answers against labels
     Score {
         /// Folder with ID/diagnosis.json or ID.json
@@ -119,15 +128,42 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
             eprintln!("{count} runs written to {}", out.display());
         }
         Command::Export { diagnosis, fmu, model } => export(diagnosis, fmu, *model)?,
-        Command::Score { answers, labels, json } => {
-            let cases = score::cases(answers, labels)?;
-            let figures = score::figures(&cases);
-            let figures = serde_json::to_string_pretty(&figures).unwrap_or_default();
-            let table = if *json { String::new() } else { score::table(&cases) };
-            output::to_stdout(format!("{table}{figures}\n").as_bytes())?;
-        }
+        Command::Check { folder, out } => check(folder, out)?,
+        Command::Score { answers, labels, json } => tell_score(answers, labels, *json)?,
     }
     Ok(Done::Fine)
+}
+
+fn tell_score(answers: &Path, labels: &Path, json: bool) -> Result<(), Stop> {
+    let cases = score::cases(answers, labels)?;
+    let figures = serde_json::to_string_pretty(&score::figures(&cases)).unwrap_or_default();
+    let table = if json { String::new() } else { score::table(&cases) };
+    output::to_stdout(format!("{table}{figures}\n").as_bytes())
+}
+
+/// One campaign after the other; one that cannot be used is told and does not stop the others.
+fn check(folder: &Path, out: &Path) -> Result<(), Stop> {
+    let entries = std::fs::read_dir(folder).map_err(|e| Fault::File {
+        path: folder.display().to_string(),
+        reason: format!("{e}; name the folder of the campaigns"),
+    })?;
+    let mut campaigns: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    campaigns.retain(|path| path.join("campaign.toml").exists());
+    campaigns.sort();
+    for campaign in &campaigns {
+        let name = campaign.file_name().unwrap_or_default();
+        eprintln!("{}", name.to_string_lossy());
+        match run_diagnose(campaign, &out.join(name), 0, Settings::default(), true) {
+            Err(Stop::Fault(fault)) => eprintln!("{fault}"),
+            Err(stop) => return Err(stop),
+            Ok(_) => {}
+        }
+    }
+    let labels = folder.join("labels.json");
+    if labels.exists() {
+        tell_score(out, &labels, false)?;
+    }
+    Ok(())
 }
 
 fn run_diagnose(

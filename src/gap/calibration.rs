@@ -1,7 +1,7 @@
 //! Numbers that turn levels into probabilities.
 //!
 //! Set by hand from a few campaigns of `open/` (open-09, open-12); the fit to all labelled campaigns
-//! is still to be done, and probabilities are not calibrated before that. See `docs/gap.md`.
+//! is still to be done, and probabilities are not calibrated before that. See the book, `gap.md`.
 
 /// Nats per unit of ln(G²) between hypotheses: the effective number of independent comparisons,
 /// far below the number of features since errors of one model are correlated everywhere.

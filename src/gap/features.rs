@@ -1,5 +1,5 @@
 //! The data vector: what of a run is compared, phase by phase, so that a small error of the frequency
-//! does not hide everything else (docs/gap.md, "Data vector").
+//! does not hide everything else (the book, gap.md).
 
 use super::campaign::{
     Plan, Record, RunKind, RunSpec, CHANNEL_COUNT, DISPLACEMENT, FRICTION, NORMAL, VELOCITY,

@@ -2,7 +2,7 @@
 //! effect causes it, how far it shrinks once the effect is added.
 //!
 //! Campaign → features of every run → base model recalibrated to the datasheet's spread → every effect
-//! added and fitted with equal effort → probabilities → hold-out runs. See `docs/gap.md`.
+//! added and fitted with equal effort → probabilities → hold-out runs. See the book, `gap.md`.
 
 pub mod calibration;
 pub mod campaign;
