@@ -27,6 +27,8 @@ pub mod metrics;
 pub mod study;
 #[cfg(feature = "cli")]
 pub mod cli;
+#[cfg(feature = "cli")]
+pub mod gap;
 
 pub use block::TreadBlock;
 pub use error::{Fault, Problem};

@@ -150,7 +150,7 @@ fn heat_lowers_friction_the_more_the_faster() {
 #[test]
 fn rest_raises_the_breakaway_peak() {
     // ln(20 ms/0.1 ms) = 5.3 e-folds more of age at b = 0.08: up to 0.4 of friction before slip.
-    let params = with("friction_ageing", 0, None);
+    let params = with("friction_ageing", 0, Some(0.08));
     let peak = |rest: f64| {
         let mut block = block(&Params {
             effect: {

@@ -9,9 +9,6 @@ use crate::mesh::Mesh;
 use crate::params::{FrictionForm, Params, Plane};
 use crate::reduction::Reduction;
 
-/// Fixed-interface modes are kept up to this multiple of `solver.frequency_bound`, so that the
-/// eigenfrequencies below the bound itself are exact within 0.1 %.
-const BOUND_MARGIN: f64 = 1.5;
 /// Elements along the face of a block of [`REFERENCE_LENGTH`], unless given; of others as the cube
 /// root of their length, since the edges need the resolution. Measured against the independent
 /// solutions: see the convergence table in the book.
@@ -47,7 +44,7 @@ impl Shape {
             given => given,
         };
         let along = ELEMENTS_ALONG * (block.length / REFERENCE_LENGTH).cbrt();
-        let omega = std::f64::consts::TAU * BOUND_MARGIN * solver.frequency_bound;
+        let omega = std::f64::consts::TAU * solver.frequency_bound;
         Self {
             length: block.length,
             height: block.height,

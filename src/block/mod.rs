@@ -4,6 +4,7 @@ mod build;
 mod memory;
 mod observe;
 mod signals;
+mod strike;
 
 pub use build::Shape;
 pub use signals::{InputSpec, OutputSpec, Outputs, INPUTS, OUTPUTS, STATIONS};

@@ -120,7 +120,7 @@ fn library(text: &str) -> Result<Library, Fault> {
 }
 
 /// The library that cargo builds along with this program.
-fn beside_this_program() -> Result<Library, Fault> {
+pub(super) fn beside_this_program() -> Result<Library, Fault> {
     let (platform, name) = if cfg!(windows) {
         ("win64", "tread_block.dll")
     } else if cfg!(target_os = "macos") {

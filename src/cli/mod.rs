@@ -9,6 +9,7 @@ mod check;
 mod field;
 mod fmu;
 mod identify;
+mod gap;
 mod init;
 mod metrics;
 mod output;
@@ -69,6 +70,8 @@ enum Command {
     Study(study::Arguments),
     /// Build, describe or check the FMU
     Fmu(fmu::Arguments),
+    /// Diagnose the gap between measurements and the model: where, which effect, how far
+    Gap(gap::Arguments),
     /// Write the book's reference pages: command line, parameters, run files, signals
     Reference(reference::Arguments),
     /// Write a completion script for a shell
@@ -90,6 +93,7 @@ pub fn main() -> ExitCode {
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Study(arguments) => study::study(&arguments),
         Command::Fmu(arguments) => fmu::run(&arguments),
+        Command::Gap(arguments) => gap::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments, Arguments::command()),
         Command::Completions { shell } => completions(shell),
     };

@@ -14,6 +14,8 @@ pub enum Done {
     Fine,
     /// The work is done and its answer is no: a check found problems, a limit was missed.
     Problems,
+    /// The work is done and its answer is this exit code.
+    Code(u8),
 }
 
 /// Why a command could not do its work.
@@ -36,6 +38,7 @@ pub fn exit_code(result: Result<Done, Stop>) -> ExitCode {
     match result {
         Ok(Done::Fine) | Err(Stop::PipeClosed) => ExitCode::SUCCESS,
         Ok(Done::Problems) => ExitCode::from(1),
+        Ok(Done::Code(code)) => ExitCode::from(code),
         Err(Stop::Fault(fault)) => {
             let text = fault.to_string();
             let count = text.lines().count();

@@ -133,15 +133,15 @@ pub const FIT: FitSpec = FitSpec {
         FitForm {
             name: "dieterich",
             params: &[
-                log("effect.friction_ageing.strength", 0.08, 0.8),
-                log("effect.friction_ageing.distance", 10e-6, 1.0),
+                log("effect.friction_ageing.strength", 0.2, 0.8),
+                log("effect.friction_ageing.distance", 30e-6, 0.9),
             ],
         },
         FitForm {
             name: "saturating",
             params: &[
-                log("effect.friction_ageing.strength", 0.3, 0.7),
-                log("effect.friction_ageing.distance", 10e-6, 1.0),
+                log("effect.friction_ageing.strength", 0.7, 0.8),
+                log("effect.friction_ageing.distance", 30e-6, 0.9),
                 log("effect.friction_ageing.time", 3e-3, 1.0),
             ],
         },

@@ -248,7 +248,7 @@ impl Default for Solver {
         Self {
             elements_along: 0,
             elements_up: 0,
-            frequency_bound: 20e3,
+            frequency_bound: 10e3,
             tolerance: 1e-2,
             max_step: 5e-6,
             min_step: 0.1e-6,

@@ -1,4 +1,5 @@
-//! Craig and Bampton, AIAA Journal 6 (1968): constraint modes and fixed-interface modes.
+//! Craig and Bampton, AIAA Journal 6 (1968): constraint modes and fixed-interface modes; and what the
+//! block's own free modes add to them.
 
 use super::fixed_interface::eigenpairs_below;
 use crate::error::Fault;
@@ -27,19 +28,28 @@ pub struct CraigBampton {
 impl CraigBampton {
     /// Reduces `full`, keeping all fixed-interface modes with λ = ω²ρ/E ≤ `bound` [1/m²].
     ///
+    /// These converge slowly where many degrees of freedom are contacts: for 0.1 % in a frequency they
+    /// had to reach to seven times that frequency. Therefore the basis also takes what it lacks of the
+    /// free eigenvectors up to the bound; their frequencies are then those of the full model.
+    ///
     /// # Errors
     /// [`Fault::NotFinite`] if the mesh is degenerate.
     pub fn reduce(full: &FullModel, mesh: &Mesh, bound: f64) -> Result<Self, Fault> {
         let contact = contact_dofs(full, mesh);
         let inner: Vec<usize> = (0..full.dofs()).filter(|d| !contact.contains(d)).collect();
         let k_ii = part(&full.stiffness, &inner, &inner);
-        let factor = CscCholesky::factor(&k_ii)
-            .map_err(|_| Fault::NotFinite { what: "stiffness matrix of the block".into(), time: 0.0 })?;
+        let factor = CscCholesky::factor(&k_ii).map_err(|_| Fault::NotFinite {
+            what: "stiffness matrix of the block".into(),
+            time: 0.0,
+        })?;
         let k_ic = DMatrix::from(&part(&full.stiffness, &inner, &contact));
         let constraint_modes = -factor.solve(&k_ic);
         let m_ii = part(&full.mass, &inner, &inner);
         let (_, fixed_modes) = eigenpairs_below(bound, &factor, &m_ii)?;
-        let basis = basis(full.dofs(), &contact, &inner, &constraint_modes, &fixed_modes);
+        let free_modes = free_modes(full, bound)?;
+        let lacking = lacking(&free_modes, &contact, &inner, &constraint_modes);
+        let inner_modes = joined(fixed_modes, &lacking, &m_ii);
+        let basis = basis(full.dofs(), &contact, &inner, &constraint_modes, &inner_modes);
         let project = |matrix: &CscMatrix<f64>| basis.transpose() * (matrix * &basis);
         Ok(Self {
             stiffness: project(&full.stiffness),
@@ -48,6 +58,50 @@ impl CraigBampton {
             contact_nodes: contact.len() / 2,
         })
     }
+}
+
+/// Eigenvectors of the block with a free tread face, λ ≤ `bound`.
+fn free_modes(full: &FullModel, bound: f64) -> Result<DMatrix<f64>, Fault> {
+    let factor = CscCholesky::factor(&full.stiffness).map_err(|_| Fault::NotFinite {
+        what: "stiffness matrix of the block".into(),
+        time: 0.0,
+    })?;
+    Ok(eigenpairs_below(bound, &factor, &full.mass)?.1)
+}
+
+/// What static deflections under their contact displacements leave of `modes`, inner part.
+fn lacking(
+    modes: &DMatrix<f64>,
+    contact: &[usize],
+    inner: &[usize],
+    constraint_modes: &DMatrix<f64>,
+) -> DMatrix<f64> {
+    modes.select_rows(inner) - constraint_modes * modes.select_rows(contact)
+}
+
+/// Share of a vector below which nothing new is left of it.
+const NOTHING_NEW: f64 = 1e-5;
+
+/// `fixed_modes` (M-orthonormal) and what is new in `more`, M-orthonormal to all before.
+fn joined(fixed_modes: DMatrix<f64>, more: &DMatrix<f64>, mass: &CscMatrix<f64>) -> DMatrix<f64> {
+    let mut all = fixed_modes;
+    for column in more.column_iter() {
+        let mut rest = DMatrix::from_column_slice(column.len(), 1, column.clone_owned().as_slice());
+        let norm = |vector: &DMatrix<f64>| (vector.transpose() * (mass * vector))[(0, 0)].sqrt();
+        let before = norm(&rest);
+        // Twice is enough for orthogonality to rounding.
+        for _ in 0..2 {
+            let share = all.transpose() * (mass * &rest);
+            rest -= &all * share;
+        }
+        let left = norm(&rest);
+        if left > NOTHING_NEW * before {
+            let at = all.ncols();
+            all = all.insert_column(at, 0.0);
+            all.set_column(at, &(rest.column(0) / left));
+        }
+    }
+    all
 }
 
 /// Free degrees of freedom of the tread face: all x, then all z.

@@ -23,6 +23,9 @@ pub struct Reduction {
     pub contact_modes: DMatrix<f64>,
     /// Coupling Φᵀ M r to the rigid motions of the clamped face: x, z, rotation.
     pub coupling: [DVector<f64>; 3],
+    /// Coupling Φᵀ M s to the shear pattern s that falls linearly along x from one at the tread face
+    /// to zero at the clamped face.
+    pub shear_coupling: DVector<f64>,
     /// Displacements of all free degrees of freedom per mode.
     pub shapes: DMatrix<f64>,
     /// Free degree of freedom of a node's x and z.
@@ -58,8 +61,10 @@ impl Reduction {
         let coupling = std::array::from_fn(|r| {
             shapes.transpose() * DVector::from_column_slice(&full.rigid_coupling[r])
         });
+        let shear_coupling = shapes.transpose() * (&full.mass * shear_pattern(&mesh, full));
         Ok(Self {
             lambda,
+            shear_coupling,
             contact_modes: vectors.rows(0, 2 * reduced.contact_nodes).into_owned(),
             coupling,
             shapes,
@@ -83,4 +88,16 @@ impl Reduction {
     pub fn frequencies(&self, e_over_rho: f64) -> Vec<f64> {
         self.lambda.iter().map(|l| (l * e_over_rho).sqrt() / std::f64::consts::TAU).collect()
     }
+}
+
+/// 1 − y/h along x at the free degrees of freedom, y from the tread face.
+fn shear_pattern(mesh: &Mesh, full: &FullModel) -> DVector<f64> {
+    let height = mesh.z[mesh.z.len() - 1];
+    let mut pattern = DVector::zeros(full.dofs());
+    for node in 0..mesh.node_count() {
+        if let Some(row) = full.dof[2 * node] {
+            pattern[row] = 1.0 - mesh.position(node)[1] / height;
+        }
+    }
+    pattern
 }

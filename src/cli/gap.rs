@@ -1,0 +1,228 @@
+//! `tread gap`: diagnose the gap between measurements and the model.
+
+use std::io::{IsTerminal, Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use super::output::{self, Done, Stop};
+use crate::error::Fault;
+use crate::gap::diagnose::{self, Settings};
+use crate::gap::{json, predict, report, score};
+
+const EXAMPLES: &str = "\
+Examples:
+  tread gap diagnose campaign --out out/campaign
+  tread gap predict out/campaign/diagnosis.json other/campaign.toml --model with-effect --out out/p
+  tread gap export out/campaign/diagnosis.json --fmu out/Repaired.fmu
+  tread gap score out labels.json
+
+Exit codes of diagnose:
+  0   no gap that an effect would be needed for
+  10  an effect is named
+  11  a class of effects that the data cannot tell apart
+  12  none of the candidates
+  2   the data cannot be used";
+
+/// What was typed.
+#[derive(Debug, clap::Args)]
+#[command(after_help = EXAMPLES)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, clap::Subcommand)]
+enum Command {
+    /// Say where the gap lies, which effect causes it and how far it shrinks
+    Diagnose {
+        /// Folder with campaign.toml and the runs
+        campaign: PathBuf,
+        /// Folder for diagnosis.json and report.html
+        #[arg(long, short)]
+        out: PathBuf,
+        /// Threads; 0: all cores. The answer does not depend on it
+        #[arg(long, short, default_value_t = 0)]
+        jobs: usize,
+        /// Seed of the bootstrap
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+        /// No progress on the standard error
+        #[arg(long, short)]
+        quiet: bool,
+    },
+    /// Simulate the runs of a campaign file with a diagnosed model
+    Predict {
+        /// The diagnosis
+        diagnosis: PathBuf,
+        /// The campaign file; measured data are not needed
+        campaign: PathBuf,
+        /// Which model
+        #[arg(long, default_value = "with-effect")]
+        model: Model,
+        /// Folder for runs/
+        #[arg(long, short)]
+        out: PathBuf,
+    },
+    /// Pack the FMU with the fitted values
+    Export {
+        /// The diagnosis
+        diagnosis: PathBuf,
+        /// The FMU to write
+        #[arg(long)]
+        fmu: PathBuf,
+        /// Which model
+        #[arg(long, default_value = "with-effect")]
+        model: Model,
+    },
+    /// Diagnose all campaigns of a folder and score those that labels.json knows
+    Check {
+        /// Folder of campaigns, with labels.json or without
+        #[arg(default_value = "shared/measurements/open")]
+        folder: PathBuf,
+        /// Folder for the answers
+        #[arg(long, short, default_value = "out/gap")]
+        out: PathBuf,
+    },
+    /// Score answers against labels
+    Score {
+        /// Folder with ID/diagnosis.json or ID.json
+        answers: PathBuf,
+        /// The labels
+        labels: PathBuf,
+        /// All figures as JSON
+        #[arg(long)]
+        json: bool,
+    },
+}
+
+/// A model of a diagnosis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Model {
+    /// At the datasheet's values.
+    Nominal,
+    /// Recalibrated.
+    Recalibrated,
+    /// With the most probable effect.
+    WithEffect,
+}
+
+impl Model {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Nominal => "nominal",
+            Self::Recalibrated => "recalibrated",
+            Self::WithEffect => "with-effect",
+        }
+    }
+}
+
+/// Does what was typed.
+pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
+    match &arguments.command {
+        Command::Diagnose { campaign, out, jobs, seed, quiet } => {
+            let settings = Settings { seed: *seed, ..Settings::default() };
+            return run_diagnose(campaign, out, *jobs, settings, *quiet);
+        }
+        Command::Predict { diagnosis, campaign, model, out } => {
+            let count = predict::predict(diagnosis, campaign, model.name(), out)?;
+            eprintln!("{count} runs written to {}", out.display());
+        }
+        Command::Export { diagnosis, fmu, model } => export(diagnosis, fmu, *model)?,
+        Command::Check { folder, out } => check(folder, out)?,
+        Command::Score { answers, labels, json } => tell_score(answers, labels, *json)?,
+    }
+    Ok(Done::Fine)
+}
+
+fn tell_score(answers: &Path, labels: &Path, json: bool) -> Result<(), Stop> {
+    let cases = score::cases(answers, labels)?;
+    let figures = serde_json::to_string_pretty(&score::figures(&cases)).unwrap_or_default();
+    let table = if json { String::new() } else { score::table(&cases) };
+    output::to_stdout(format!("{table}{figures}\n").as_bytes())
+}
+
+/// One campaign after the other; one that cannot be used is told and does not stop the others.
+fn check(folder: &Path, out: &Path) -> Result<(), Stop> {
+    let entries = std::fs::read_dir(folder).map_err(|e| Fault::File {
+        path: folder.display().to_string(),
+        reason: format!("{e}; name the folder of the campaigns"),
+    })?;
+    let mut campaigns: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    campaigns.retain(|path| path.join("campaign.toml").exists());
+    campaigns.sort();
+    for campaign in &campaigns {
+        let name = campaign.file_name().unwrap_or_default();
+        eprintln!("{}", name.to_string_lossy());
+        match run_diagnose(campaign, &out.join(name), 0, Settings::default(), true) {
+            Err(Stop::Fault(fault)) => eprintln!("{fault}"),
+            Err(stop) => return Err(stop),
+            Ok(_) => {}
+        }
+    }
+    let labels = folder.join("labels.json");
+    if labels.exists() {
+        tell_score(out, &labels, false)?;
+    }
+    Ok(())
+}
+
+fn run_diagnose(
+    campaign: &Path,
+    out: &Path,
+    jobs: usize,
+    settings: Settings,
+    quiet: bool,
+) -> Result<Done, Stop> {
+    let began = Instant::now();
+    let shown = !quiet && std::io::stderr().is_terminal();
+    let progress = |share: f64, what: &str| {
+        if shown {
+            let gone = began.elapsed().as_secs_f64();
+            let left = if share > 0.05 { gone * (1.0 - share) / share } else { f64::NAN };
+            eprint!("\r{:3.0} %  {what}, about {left:.0} s left          ", 100.0 * share);
+        }
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build().map_err(|e| {
+        Fault::File { path: "threads".into(), reason: e.to_string() }
+    })?;
+    let diagnosis = pool.install(|| diagnose::diagnose(campaign, settings, &progress))?;
+    if shown {
+        eprintln!();
+    }
+    for problem in diagnose::flags(&diagnosis) {
+        eprintln!("note: {problem}");
+    }
+    let document = json::document(&diagnosis);
+    let text = serde_json::to_string_pretty(&document).unwrap_or_default();
+    output::to(Some(&out.join("diagnosis.json")), text.as_bytes())?;
+    let page = pool.install(|| report::page(&diagnosis));
+    output::to(Some(&out.join("report.html")), page.as_bytes())?;
+    output::to_stdout(format!("{}\n", diagnose::verdict(&diagnosis)).as_bytes())?;
+    Ok(Done::Code(diagnosis.decision.kind.exit_code()))
+}
+
+/// The FMU as `tread fmu build` packs it, with the fitted values in its resources.
+fn export(diagnosis: &Path, fmu: &Path, model: Model) -> Result<(), Stop> {
+    let params = json::read_model(diagnosis, model.name())?;
+    let plain = crate::fmi::package::pack(&[super::fmu::beside_this_program()?])?;
+    let failed = |reason: String| Fault::File { path: fmu.display().to_string(), reason };
+    let broken = |e: zip::result::ZipError| failed(e.to_string());
+    let mut from = zip::ZipArchive::new(std::io::Cursor::new(plain)).map_err(broken)?;
+    let mut to = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    let options = zip::write::SimpleFileOptions::default();
+    for at in 0..from.len() {
+        let mut entry = from.by_index(at).map_err(broken)?;
+        let name = entry.name().map_err(broken)?.to_string();
+        let mut bytes = Vec::new();
+        entry.read_to_end(&mut bytes).map_err(|e| failed(e.to_string()))?;
+        if name == "resources/parameters.toml" {
+            bytes = crate::params::load::to_toml(&params).into_bytes();
+        }
+        to.start_file(name, options).map_err(broken)?;
+        to.write_all(&bytes).map_err(|e| failed(e.to_string()))?;
+    }
+    let packed = to.finish().map_err(broken)?.into_inner();
+    output::to(Some(fmu), &packed)?;
+    eprintln!("packed {}", fmu.display());
+    Ok(())
+}

@@ -1,0 +1,26 @@
+//! Numbers that turn levels into probabilities.
+//!
+//! Set by hand from a few campaigns of `open/` (open-09, open-12); the fit to all labelled campaigns
+//! is still to be done, and probabilities are not calibrated before that. See the book, `gap.md`.
+
+/// Nats per unit of ln(G²) between hypotheses: the effective number of independent comparisons,
+/// far below the number of features since errors of one model are correlated everywhere.
+pub const SHARPNESS: f64 = 9.0;
+/// Added to G² before the logarithm: below the floor nothing can be told.
+pub const BLUR: f64 = 0.25;
+/// Logarithm of the odds of "no gap" before the data.
+pub const PRIOR_NONE: f64 = 2.5;
+/// Logarithm of the odds of "unknown" before the data.
+pub const PRIOR_UNKNOWN: f64 = -1.0;
+/// Logarithm of the odds of two effects at once before the data.
+pub const PRIOR_PAIR: f64 = -2.5;
+/// An unknown cause is taken to leave this share of ln(G²) that the recalibrated model leaves.
+pub const UNKNOWN_LEAVES: f64 = 0.7;
+/// G² up to which a recalibrated model has no gap worth a name.
+pub const NO_GAP: f64 = 1.4;
+/// Probability from which an effect is named.
+pub const NAME_FROM: f64 = 0.7;
+/// Probability that a class of effects must hold together.
+pub const CLASS_FROM: f64 = 0.9;
+/// Most effects that a class may hold.
+pub const CLASS_SIZE: usize = 3;

@@ -1,0 +1,132 @@
+//! How far the gap shrinks, on runs that no fit has seen.
+
+use super::campaign::{RunKind, RunSpec};
+use super::problem::{Bench, Residuals};
+
+/// Residuals beyond count as this many standard deviations.
+const CAP: f64 = 40.0;
+/// Bootstrap samples of the interval.
+const SAMPLES: usize = 2000;
+
+/// Runs to be held out: plain sliding runs inside the range of speeds and pressures of the others,
+/// so that the fit keeps the corners, at most a quarter of the plain runs.
+pub fn choose(runs: &[RunSpec]) -> Vec<usize> {
+    let plain: Vec<usize> = (0..runs.len())
+        .filter(|r| runs[*r].kind == RunKind::Sliding && runs[*r].dwell_s == 0.0)
+        .filter(|r| runs[*r].road_speed_m_s > 0.0)
+        .collect();
+    if plain.len() < 6 {
+        return Vec::new();
+    }
+    let inside = |of: fn(&RunSpec) -> f64, r: usize| {
+        let value = of(&runs[r]);
+        plain.iter().any(|o| of(&runs[*o]) < value) && plain.iter().any(|o| of(&runs[*o]) > value)
+    };
+    let twin = |r: usize| {
+        plain.iter().any(|o| {
+            *o != r
+                && runs[*o].road_speed_m_s == runs[r].road_speed_m_s
+                && runs[*o].mean_pressure_pa == runs[r].mean_pressure_pa
+        })
+    };
+    let candidates: Vec<usize> = plain
+        .iter()
+        .copied()
+        .filter(|r| inside(|s| s.road_speed_m_s, *r) && inside(|s| s.mean_pressure_pa, *r) && !twin(*r))
+        .collect();
+    let most = (plain.len() / 4).max(1);
+    let step = (candidates.len() as f64 / most as f64).max(1.0);
+    let mut chosen: Vec<usize> = (0..most)
+        .filter_map(|k| candidates.get((k as f64 * step) as usize).copied())
+        .collect();
+    chosen.dedup();
+    chosen
+}
+
+/// Runs to be fitted: all but the held-out ones, repetitions, and slow ramps that are as good as at
+/// rest within `horizon` [s].
+pub fn to_fit(runs: &[RunSpec], held_out: &[usize], horizon: f64) -> Vec<usize> {
+    let same = |a: &RunSpec, b: &RunSpec| RunSpec { file: String::new(), ..a.clone() }
+        == RunSpec { file: String::new(), ..b.clone() };
+    let slow = |r: &RunSpec| {
+        let gain = r.road_speed_end_m_s.unwrap_or(0.0).abs() * horizon / r.duration_s;
+        r.kind == RunKind::SpeedRamp && r.road_speed_m_s.abs() + gain < 0.15
+    };
+    (0..runs.len())
+        .filter(|r| !held_out.contains(r) && !slow(&runs[*r]))
+        .filter(|r| !runs[..*r].iter().any(|earlier| same(earlier, &runs[*r])))
+        .collect()
+}
+
+/// G² of single runs: weighted mean square of the residuals.
+pub fn squares(bench: &Bench, residuals: &Residuals, of: &[usize]) -> Vec<f64> {
+    of.iter()
+        .map(|r| {
+            let pairs = residuals[*r].iter().zip(&bench.weight[*r]);
+            let sum: f64 = pairs.map(|(x, w)| w * (x * x).min(CAP * CAP)).sum();
+            sum / bench.weight[*r].iter().sum::<f64>().max(1e-12)
+        })
+        .collect()
+}
+
+/// Mean of squares as a gap G.
+pub fn gap(squares: &[f64]) -> f64 {
+    (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+}
+
+/// Share of the closable gap that was closed: (G_c² − G_e²)/(G_c² − 1), and 0 where nothing is open.
+pub fn closed(before: &[f64], after: &[f64]) -> f64 {
+    let (before, after) = (gap(before).powi(2), gap(after).powi(2).max(1.0));
+    if before <= 1.0 {
+        return 0.0;
+    }
+    ((before - after) / (before - 1.0)).clamp(-1.0, 1.0)
+}
+
+/// Interval of [`closed`] (5 % to 95 %) by a paired bootstrap over the runs.
+pub fn interval(before: &[f64], after: &[f64], seed: u64) -> (f64, f64) {
+    let count = before.len();
+    if count < 2 {
+        return (-1.0, 1.0);
+    }
+    let mut state = seed | 1;
+    let mut next = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 33) as usize % count
+    };
+    let mut values: Vec<f64> = (0..SAMPLES)
+        .map(|_| {
+            let draw: Vec<usize> = (0..count).map(|_| next()).collect();
+            let pick = |from: &[f64]| draw.iter().map(|i| from[*i]).collect::<Vec<_>>();
+            closed(&pick(before), &pick(after))
+        })
+        .collect();
+    values.sort_by(f64::total_cmp);
+    (values[SAMPLES / 20], values[SAMPLES - SAMPLES / 20 - 1])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn closing_everything_down_to_the_floor_is_one() {
+        assert_eq!(closed(&[9.0, 16.0], &[1.0, 1.0]), 1.0);
+    }
+
+    #[test]
+    fn closing_nothing_is_zero_and_harm_is_negative() {
+        assert_eq!(closed(&[9.0], &[9.0]), 0.0);
+        assert!(closed(&[9.0], &[12.0]) < 0.0);
+    }
+
+    #[test]
+    fn the_interval_holds_the_value() {
+        let (before, after) = ([9.0, 16.0, 12.0], [2.0, 5.0, 1.5]);
+        let (lo, hi) = interval(&before, &after, 7);
+        let value = closed(&before, &after);
+        assert!(lo <= value && value <= hi, "{lo} {value} {hi}");
+    }
+}

@@ -1,0 +1,312 @@
+//! Which effects are asked, and how well each explains the data after the same effort.
+
+use super::campaign::RunKind;
+use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
+use super::problem::{Bench, Choice};
+use nalgebra::DMatrix;
+
+/// Whitened severities from which an effect is started.
+const STARTS: [f64; 2] = [-1.2, 0.3];
+/// Effects of which all forms are tried.
+const FAMILIES: usize = 3;
+/// Effects that are refined with Jacobians of their own.
+const REFINED: usize = 2;
+/// Effects of which pairs are made.
+const PAIRED: usize = 2;
+
+/// A fitted hypothesis.
+#[derive(Clone, Debug)]
+pub struct Hypothesis {
+    /// Effects; empty for the base model.
+    pub added: Vec<Choice>,
+    /// The fit on the runs that may be seen.
+    pub fit: Fit,
+    /// Objective over the sum of weights: about 1 where nothing is left.
+    pub level: f64,
+}
+
+/// All fits of a campaign.
+#[derive(Clone, Debug)]
+pub struct Fits {
+    /// The recalibrated base model.
+    pub base: Hypothesis,
+    /// Best form of every effect, in the order of `effects::fit_specs()`.
+    pub singles: Vec<Hypothesis>,
+    /// Pairs among the best.
+    pub pairs: Vec<Hypothesis>,
+    /// Smallest whitened response of every effect: severity that was tried, and weighted loss that
+    /// it causes.
+    pub response: Vec<(f64, f64)>,
+}
+
+/// Switches for the ablation table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Method {
+    /// Recalibrate the base model before anything is credited.
+    pub recalibrate: bool,
+    /// Start the base model again from what the effects' fits found.
+    pub equal_effort: bool,
+    /// Try all forms of an effect, not only the first.
+    pub families: bool,
+}
+
+impl Method {
+    /// Everything.
+    pub const FULL: Self = Self { recalibrate: true, equal_effort: true, families: true };
+}
+
+const fn effort(steps: usize, refresh: usize, heat: f64, onset_parts: Option<usize>) -> Effort {
+    Effort { steps, refresh, view: View { heat, onset_parts } }
+}
+
+/// From the datasheet to the optimum of the base model: the first two milliseconds, then all.
+const FAR: [Effort; 3] =
+    [effort(3, 1, 5.0, Some(2)), effort(1, 1, 4.0, None), effort(2, 2, 1.0, None)];
+/// Once more from another place.
+const HOME: [Effort; 2] = [effort(2, 1, 4.0, None), effort(3, 2, 1.0, None)];
+/// Places looked at where the optimum is not good.
+const DRAWS: usize = 32;
+/// Level from which on an optimum is good.
+const SETTLED: f64 = 0.8;
+/// From the base model's optimum to that of an effect, with an inherited Jacobian.
+const NEAR: [Effort; 2] = [effort(2, 9, 3.0, None), effort(2, 9, 1.0, None)];
+/// With Jacobians of its own.
+pub const FINE: [Effort; 1] = [effort(3, 2, 1.0, None)];
+/// Once more.
+const AGAIN: Effort = effort(2, 9, 1.0, None);
+
+/// Fits everything on the runs `of`; `progress` is told the share done.
+pub fn fit_all(
+    bench: &Bench,
+    of: &[usize],
+    method: Method,
+    progress: &(dyn Fn(f64, &str) + Sync),
+) -> Fits {
+    progress(0.0, "recalibrating the base model");
+    let start = vec![0.0; bench.base_size()];
+    let mut base = if method.recalibrate {
+        let struck = struck(bench, start, of);
+        recalibrate(bench, evaluate(bench, &[], struck, of), of)
+    } else {
+        evaluate(bench, &[], start, of)
+    };
+    let all: Vec<usize> = (0..base.x.len()).collect();
+    let jacobian = columns(bench, &base, &all, of);
+    base.jacobian = Some(jacobian);
+    let mut singles = Vec::new();
+    let mut response = Vec::new();
+    for (effect, spec) in bench.specs.iter().enumerate() {
+        let done = 0.15 + 0.30 * effect as f64 / bench.specs.len() as f64;
+        progress(done, &format!("fitting {}", spec.effect));
+        let (found, tried) = start_effect(bench, &base, Choice { effect, form: 0 }, of, method);
+        response.push(tried);
+        singles.push(level(bench, found, of));
+    }
+    if method.families {
+        progress(0.45, "other forms of the best effects");
+        for at in ranked(&singles).into_iter().take(FAMILIES) {
+            let effect = singles[at].added[0].effect;
+            for form in 1..bench.specs[effect].forms.len() {
+                let (found, _) = start_effect(bench, &base, Choice { effect, form }, of, method);
+                if found.objective < singles[at].fit.objective {
+                    singles[at] = level(bench, found, of);
+                }
+            }
+        }
+    }
+    let order = ranked(&singles);
+    for (k, at) in order.iter().take(REFINED).enumerate() {
+        progress(0.5 + 0.25 * k as f64 / REFINED as f64, "refining the best effects");
+        if method.recalibrate {
+            let mut fit = approach(bench, singles[*at].fit.clone(), of, &FINE);
+            fit.jacobian = Some(full_jacobian(bench, &fit, of));
+            if fit.objective < singles[*at].fit.objective {
+                singles[*at] = level(bench, fit, of);
+            }
+        }
+    }
+    if method.equal_effort && method.recalibrate {
+        progress(0.75, "the base model once more, from what the effects found");
+        base = again(bench, base, &singles, &order, of);
+    }
+    let pairs = pairs(bench, &base, &singles, of, method, progress);
+    progress(1.0, "fitted");
+    Fits { base: level(bench, base, of), singles, pairs, response }
+}
+
+/// The base model's optimum from `start`.
+pub fn recalibrate(bench: &Bench, start: Fit, of: &[usize]) -> Fit {
+    let mut best = approach(bench, start, of, &FAR);
+    for heat in [4.0, 2.0] {
+        if best.objective < SETTLED * bench.total_weight(of) {
+            break;
+        }
+        let view = View { heat, onset_parts: None };
+        let found = explore(bench, best.clone(), of, DRAWS, view);
+        let found = approach(bench, found, of, &HOME);
+        if found.objective < best.objective {
+            best = found;
+        }
+    }
+    best
+}
+
+/// The free block alone tells modulus and damping, and costs next to nothing.
+pub fn struck(bench: &Bench, start: Vec<f64>, of: &[usize]) -> Vec<f64> {
+    let free = |r: &usize| bench.runs[*r].kind == RunKind::Ringdown;
+    let rung: Vec<usize> = of.iter().copied().filter(free).collect();
+    if rung.is_empty() {
+        return start;
+    }
+    let fit = evaluate(bench, &[], start, &rung);
+    approach(bench, fit, &rung, &[effort(4, 1, 5.0, None), effort(4, 1, 1.0, None)]).x
+}
+
+fn full_jacobian(bench: &Bench, fit: &Fit, of: &[usize]) -> DMatrix<f64> {
+    columns(bench, fit, &(0..fit.x.len()).collect::<Vec<_>>(), of)
+}
+
+fn better(a: Option<Fit>, b: Fit) -> Option<Fit> {
+    match a {
+        Some(a) if a.objective <= b.objective => Some(a),
+        _ => Some(b),
+    }
+}
+
+fn level(bench: &Bench, fit: Fit, of: &[usize]) -> Hypothesis {
+    let level = fit.objective / bench.total_weight(of);
+    Hypothesis { added: fit.added.clone(), fit, level }
+}
+
+/// Indices from the best to the worst.
+pub fn ranked(hypotheses: &[Hypothesis]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..hypotheses.len()).collect();
+    order.sort_by(|a, b| hypotheses[*a].level.total_cmp(&hypotheses[*b].level));
+    order
+}
+
+/// One form of an effect from the base model's optimum, with the base model's Jacobian.
+fn start_effect(
+    bench: &Bench,
+    base: &Fit,
+    choice: Choice,
+    of: &[usize],
+    method: Method,
+) -> (Fit, (f64, f64)) {
+    let mut added = base.added.clone();
+    added.push(choice);
+    let coordinates = bench.coordinates(&added);
+    let at = base.x.len();
+    let signed = matches!(coordinates[at].spread, crate::effects::Spread::Absolute(_));
+    let starts = if signed { [-0.7, 0.7] } else { STARTS };
+    let points: Vec<Vec<f64>> = starts
+        .iter()
+        .map(|severity| {
+            let mut x = base.x.clone();
+            x.resize(coordinates.len(), 0.0);
+            x[at] = *severity;
+            x
+        })
+        .collect();
+    let mut tried = (0.0, 0.0);
+    let mut best: Option<Fit> = None;
+    for (k, x) in points.into_iter().enumerate() {
+        let fit = evaluate(bench, &added, x, of);
+        if k == 0 {
+            tried = (coordinates[at].value(starts[0]).abs(), caused(bench, base, &fit));
+        }
+        best = better(best, fit);
+    }
+    let Some(mut fit) = best else { return (base.clone(), tried) };
+    let own: Vec<usize> =
+        if method.recalibrate { (at..fit.x.len()).collect() } else { vec![at] };
+    let columns = columns(bench, &fit, &own, of);
+    fit.jacobian = base.jacobian.as_ref().map(|j| {
+        let mut wide = j.clone().resize_horizontally(coordinates.len(), 0.0);
+        if !method.recalibrate {
+            wide.fill(0.0);
+        }
+        for (k, column) in own.iter().enumerate() {
+            wide.set_column(*column, &columns.column(k));
+        }
+        wide
+    });
+    (approach(bench, fit, of, &NEAR), tried)
+}
+
+/// Weighted loss of what an effect changes.
+fn caused(bench: &Bench, from: &Fit, to: &Fit) -> f64 {
+    let change = to
+        .residuals
+        .iter()
+        .zip(&from.residuals)
+        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| a - b).collect())
+        .collect();
+    bench.gap(&change)
+}
+
+/// The base model from the nuisance parameters of the best effects.
+fn again(
+    bench: &Bench,
+    mut base: Fit,
+    singles: &[Hypothesis],
+    order: &[usize],
+    of: &[usize],
+) -> Fit {
+    let size = base.x.len();
+    for at in order.iter().take(2) {
+        let x = singles[*at].fit.x[..size].to_vec();
+        let trial = improve(bench, evaluate(bench, &[], x, of), of, AGAIN);
+        if trial.objective < base.objective {
+            base = trial;
+        }
+    }
+    if base.jacobian.is_none() {
+        base.jacobian = Some(full_jacobian(bench, &base, of));
+    }
+    base
+}
+
+/// Pairs among the best effects, started from the better of the two.
+fn pairs(
+    bench: &Bench,
+    base: &Fit,
+    singles: &[Hypothesis],
+    of: &[usize],
+    method: Method,
+    progress: &(dyn Fn(f64, &str) + Sync),
+) -> Vec<Hypothesis> {
+    let order = ranked(singles);
+    let mut best: Vec<usize> = order.into_iter().take(PAIRED).collect();
+    best.retain(|at| singles[*at].fit.objective < base.objective);
+    let mut out = Vec::new();
+    let mut done = 0.8;
+    for (i, first) in best.iter().enumerate() {
+        for second in &best[i + 1..] {
+            // Two fits that need each other start from the better one.
+            progress(done, "fitting pairs");
+            done = f64::min(done + 0.03, 0.98);
+            let from = &singles[*first].fit;
+            let choice = singles[*second].added[0];
+            let mut from = from.clone();
+            if from.jacobian.is_none() {
+                from.jacobian = Some(full_jacobian(bench, &from, of));
+            }
+            let (found, _) = start_effect(bench, &from, choice, of, method);
+            out.push(level(bench, found, of));
+        }
+    }
+    let order = ranked(&out);
+    if let Some(at) = order.first().copied() {
+        let fit = improve(bench, out[at].fit.clone(), of, AGAIN);
+        if fit.objective < out[at].fit.objective {
+            out[at] = level(bench, fit, of);
+        }
+    }
+    out
+}
+
+/// Standard deviations of a fit's whitened parameters.
+pub fn deviations(bench: &Bench, hypothesis: &Hypothesis) -> Vec<f64> {
+    fit::deviations(bench, &hypothesis.fit)
+}

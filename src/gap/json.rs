@@ -1,0 +1,179 @@
+//! `diagnosis.json`, schema `tread-block-diagnosis/1` (docs/diagnosis.schema.json).
+
+use super::decide::{self, Cause};
+use super::diagnose::{self, Diagnosis};
+use super::hypotheses;
+use super::problem::Bench;
+use super::simulate::nominal;
+use crate::error::{Fault, Problem};
+use crate::params::{table, Kind, Params, Value};
+use serde_json::{json, Map, Value as Json};
+use std::path::Path;
+
+/// Name and version of the schema.
+pub const SCHEMA: &str = "tread-block-diagnosis/1";
+
+/// The document.
+pub fn document(d: &Diagnosis) -> Json {
+    let bench = &d.bench;
+    let rounded = |x: f64| (x * 1e6).round() / 1e6;
+    let best = diagnose::best_cause(&d.weighed);
+    json!({
+        "schema": SCHEMA,
+        "campaign": d.campaign.plan.id,
+        "decision": {
+            "kind": d.decision.kind.name(),
+            "effects": d.decision.effects,
+            "module": d.decision.module,
+            "text": diagnose::verdict(d),
+        },
+        "hypotheses": hypotheses_json(d),
+        "where": d.cells.iter().map(|c| json!({
+            "run": c.run, "channel": c.channel, "phase": c.phase, "band_hz": c.band,
+            "gap": rounded(c.gap), "significant": c.significant,
+        })).collect::<Vec<_>>(),
+        "modules": d.modules.iter().map(|(name, share)| json!({"name": name, "share": share}))
+            .collect::<Vec<_>>(),
+        "gap": {
+            "floor": 1,
+            "nominal": d.gap.nominal,
+            "recalibrated": d.gap.recalibrated,
+            "with_effect": d.gap.with_effect,
+            "sham_closed_fraction": d.gap.sham,
+            "closed_fraction": {
+                "value": d.gap.closed[0], "lo": d.gap.closed[1], "hi": d.gap.closed[2],
+            },
+            "held_out": d.gap.held_out.iter().map(|r| bench.runs[*r].file.clone())
+                .collect::<Vec<_>>(),
+        },
+        "indistinguishable": d.indistinguishable,
+        "detectable": d.detectable.iter()
+            .map(|(effect, a)| json!({"effect": effect, "min_severity": a})).collect::<Vec<_>>(),
+        "next_experiment": d.experiments.iter().map(|e| json!({
+            "name": e.run.file,
+            "kind": "sliding",
+            "road_speed_m_s": e.run.road_speed_m_s,
+            "mean_pressure_pa": e.run.mean_pressure_pa,
+            "dwell_s": e.run.dwell_s,
+            "duration_s": e.run.duration_s,
+            "between": e.between,
+            "expected_gain_nats": e.gain,
+        })).collect::<Vec<_>>(),
+        "models": {
+            "nominal": changes(bench, &nominal(&bench.plan)),
+            "recalibrated": changes(bench, &bench.params(&[], &d.fits.base.fit.x)),
+            "with-effect": changes(bench, &params_of(d, &best)),
+            "with-effect_effects": decide::names(bench, &d.fits, &best),
+        },
+        "recalibration": parameters(d, &Cause::None),
+        "flags": diagnose::flags(d).iter().map(Problem::to_string).collect::<Vec<_>>(),
+        "provenance": {
+            "data_hash": format!("{:016x}", d.campaign.hash()),
+            "runs": d.campaign.runs.iter()
+                .map(|r| json!({"file": r.spec.file, "hash": format!("{:016x}", r.hash)}))
+                .collect::<Vec<_>>(),
+            "seed": d.settings.seed,
+            "version": env!("CARGO_PKG_VERSION"),
+            "simulations": bench.simulations(),
+            "seconds": (d.seconds * 10.0).round() / 10.0,
+        },
+    })
+}
+
+/// Parameters of the model of a cause.
+pub fn params_of(d: &Diagnosis, cause: &Cause) -> Params {
+    let hypothesis = decide::fit_of(&d.fits, cause);
+    d.bench.params(&hypothesis.added, &hypothesis.fit.x)
+}
+
+fn hypotheses_json(d: &Diagnosis) -> Vec<Json> {
+    d.weighed
+        .iter()
+        .zip(&d.closed)
+        .map(|(w, closed)| {
+            let mut out = Map::new();
+            let effects = decide::names(&d.bench, &d.fits, &w.cause);
+            out.insert("effects".into(), json!(effects));
+            out.insert("probability".into(), json!(w.probability));
+            out.insert("closed_fraction".into(), json!(closed));
+            if w.cause != Cause::Unknown {
+                out.insert("level".into(), json!(decide::fit_of(&d.fits, &w.cause).level));
+            }
+            let own = matches!(w.cause, Cause::Single(_) | Cause::Pair(_));
+            let list = if own { parameters(d, &w.cause) } else { Vec::new() };
+            let base = if own { d.bench.base_size() } else { 0 };
+            out.insert("parameters".into(), json!(list.into_iter().skip(base).collect::<Vec<_>>()));
+            Json::Object(out)
+        })
+        .collect()
+}
+
+/// Fitted parameters of a cause with standard deviations and priors.
+pub fn parameters(d: &Diagnosis, cause: &Cause) -> Vec<Json> {
+    let hypothesis = decide::fit_of(&d.fits, cause);
+    let deviations = hypotheses::deviations(&d.bench, hypothesis);
+    d.bench
+        .coordinates(&hypothesis.added)
+        .iter()
+        .zip(hypothesis.fit.x.iter().zip(deviations))
+        .map(|(c, (x, sd))| {
+            json!({
+                "name": c.name,
+                "value": c.value(*x),
+                "std": c.deviation(*x, sd),
+                "unit": unit(c.name),
+                "prior": c.centre,
+                "sigmas_from_prior": (x * 1e3).round() / 1e3,
+            })
+        })
+        .collect()
+}
+
+fn unit(name: &str) -> &'static str {
+    match table::find(name).map(|spec| spec.kind) {
+        Some(Kind::Real { unit, .. }) => unit,
+        _ => "1",
+    }
+}
+
+/// Parameters that differ from the model's defaults, by dotted name.
+fn changes(_bench: &Bench, params: &Params) -> Json {
+    let plain = Params::default();
+    let mut out = Map::new();
+    for spec in table::specs() {
+        let value = (spec.get)(params);
+        if value != (spec.get)(&plain) {
+            let value = match value {
+                Value::Real(x) => json!(x),
+                Value::Integer(_) => json!(table::show(spec, &value)),
+                Value::Boolean(b) => json!(b),
+                Value::Text(t) => json!(t),
+            };
+            out.insert(spec.name.to_string(), value);
+        }
+    }
+    Json::Object(out)
+}
+
+/// The same as lines of TOML.
+pub fn to_toml(model: &Map<String, Json>) -> String {
+    model.iter().map(|(name, value)| format!("{name} = {value}\n")).collect()
+}
+
+/// Reads the parameters of `model` (nominal, recalibrated, with-effect) from a `diagnosis.json`.
+///
+/// # Errors
+/// A file that cannot be read or is no diagnosis.
+pub fn read_model(path: &Path, model: &str) -> Result<Params, Fault> {
+    let fault = |reason: String| Fault::File { path: path.display().to_string(), reason };
+    let text = std::fs::read_to_string(path).map_err(|e| fault(e.to_string()))?;
+    let document: Json = serde_json::from_str(&text).map_err(|e| fault(e.to_string()))?;
+    if document["schema"] != SCHEMA {
+        return Err(fault(format!("schema is {}, not {SCHEMA}", document["schema"])));
+    }
+    let Some(values) = document["models"][model].as_object() else {
+        return Err(fault(format!("has no model {model:?}; nominal, recalibrated, with-effect")));
+    };
+    // One way into the parameters for all: the names and checks of the TOML files.
+    crate::params::load::from_toml(&to_toml(values))
+}

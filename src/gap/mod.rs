@@ -1,0 +1,25 @@
+//! Diagnosis of the gap between a measured campaign and the model: where it lies, which unmodelled
+//! effect causes it, how far it shrinks once the effect is added.
+//!
+//! Campaign → features of every run → base model recalibrated to the datasheet's spread → every effect
+//! added and fitted with equal effort → probabilities → hold-out runs. See the book, `gap.md`.
+
+pub mod calibration;
+pub mod campaign;
+pub mod decide;
+pub mod diagnose;
+pub mod features;
+pub mod fit;
+pub mod floor;
+pub mod held_out;
+pub mod json;
+pub mod predict;
+pub mod report;
+pub mod score;
+pub mod svg;
+pub mod hypotheses;
+pub mod problem;
+pub mod quality;
+pub mod simulate;
+pub mod spectrum;
+pub mod where_;

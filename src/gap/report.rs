@@ -1,0 +1,292 @@
+//! `report.html`: one self-contained page.
+
+use super::campaign::{Record, Run, CHANNELS, FRICTION, VELOCITY};
+use super::decide::{self, Cause};
+use super::diagnose::{self, Diagnosis};
+use super::json;
+use super::simulate::road_speed;
+use super::spectrum::{amplitude, hann, mean, power};
+use super::svg::{bars, lines, COLOURS};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}\
+h1{font-size:1.4em}h2{font-size:1.1em;margin-top:2em;border-bottom:1px solid #ddd}\
+.verdict{font-size:1.15em;background:#f3f6f8;border-left:5px solid #2a7f9e;padding:.7em 1em}\
+table{border-collapse:collapse;font-size:13px}td,th{padding:2px 7px;border:1px solid #ddd;text-align:right}\
+th,td:first-child{text-align:left}svg text{font:10px system-ui,sans-serif;fill:#444}svg .t{font-weight:600}\
+.frame{fill:none;stroke:#ccc}.bar{fill:#2a7f9e}.note{color:#666;font-size:13px}.row{display:flex;flex-wrap:wrap;gap:6px}\
+details{margin:.3em 0}";
+
+/// The page.
+pub fn page(d: &Diagnosis) -> String {
+    let mut out = String::new();
+    let title = format!("Gap diagnosis of {}", escape(&d.campaign.plan.id));
+    let _ = write!(
+        out,
+        "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\
+         <style>{STYLE}</style></head><body><h1>{title}</h1><p class=\"verdict\">{}</p>",
+        escape(&diagnose::verdict(d))
+    );
+    flags(d, &mut out);
+    ladder(d, &mut out);
+    causes(d, &mut out);
+    heat_map(d, &mut out);
+    overlays(d, &mut out);
+    parameters(d, &mut out);
+    experiments(d, &mut out);
+    provenance(d, &mut out);
+    out.push_str("</body></html>\n");
+    out
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+fn flags(d: &Diagnosis, out: &mut String) {
+    if d.campaign.warnings.is_empty() {
+        return;
+    }
+    out.push_str("<h2>What was wrong with the data</h2><ul>");
+    for problem in &d.campaign.warnings {
+        let _ = write!(out, "<li>{}</li>", escape(&problem.to_string()));
+    }
+    out.push_str("</ul>");
+}
+
+fn ladder(d: &Diagnosis, out: &mut String) {
+    let gap = &d.gap;
+    let rows = [
+        ("datasheet", gap.nominal, String::new()),
+        ("recalibrated", gap.recalibrated, String::new()),
+        (
+            "with the effect",
+            gap.with_effect,
+            format!(
+                "closes {:.0} % [{:.0}, {:.0}]",
+                100.0 * gap.closed[0],
+                100.0 * gap.closed[1],
+                100.0 * gap.closed[2]
+            ),
+        ),
+        ("floor", 1.0, "noise and error of the method".to_string()),
+    ];
+    let rows: Vec<(String, f64, String)> = rows
+        .into_iter()
+        .map(|(name, g, note)| (name.to_string(), g, format!("{g:.2}  {note}")))
+        .collect();
+    let longest = gap.nominal.max(gap.recalibrated).max(1.0);
+    let files: Vec<&str> = gap.held_out.iter().map(|r| d.bench.runs[*r].file.as_str()).collect();
+    let _ = write!(
+        out,
+        "<h2>How far: gap in units of the floor, on runs that no fit has seen</h2>{}\
+         <p class=\"note\">Held out: {}. Sham: the other effects, fitted with the same effort, close \
+         {:.0} % (median).</p>",
+        bars(&rows, longest),
+        escape(&files.join(", ")),
+        100.0 * gap.sham
+    );
+}
+
+fn causes(d: &Diagnosis, out: &mut String) {
+    let rows: Vec<(String, f64, String)> = d
+        .weighed
+        .iter()
+        .zip(&d.closed)
+        .take(12)
+        .map(|(w, closed)| {
+            let names = decide::names(&d.bench, &d.fits, &w.cause);
+            let label = if names.is_empty() { "none".to_string() } else { names.join(" + ") };
+            let closes = closed.map_or(String::new(), |c| format!(", closes {:.0} %", 100.0 * c));
+            (label, w.probability, format!("{:.3}{closes}", w.probability))
+        })
+        .collect();
+    let _ = write!(out, "<h2>Which: probability of the causes</h2>{}", bars(&rows, 1.0));
+    if !d.indistinguishable.is_empty() {
+        let pairs: Vec<String> = d.indistinguishable.iter().map(|p| p.join(" / ")).collect();
+        let _ = write!(out, "<p>Not told apart by these data: {}.</p>", escape(&pairs.join("; ")));
+    }
+    let shares: Vec<(String, f64, String)> = d
+        .modules
+        .iter()
+        .map(|(name, share)| (name.clone(), *share, format!("{:.0} %", 100.0 * share)))
+        .collect();
+    let _ = write!(out, "<h2>Where in the model</h2>{}", bars(&shares, 1.0));
+    out.push_str("<details><summary>Smallest severity that would have been seen</summary><table><tr><th>effect</th><th>severity</th></tr>");
+    for (effect, severity) in &d.detectable {
+        let _ = write!(out, "<tr><td>{effect}</td><td>{severity:.3e}</td></tr>");
+    }
+    out.push_str("</table></details>");
+}
+
+fn heat_map(d: &Diagnosis, out: &mut String) {
+    let mut columns: Vec<(usize, &str)> = Vec::new();
+    let mut rows: BTreeMap<&str, BTreeMap<(usize, &str), (f64, bool)>> = BTreeMap::new();
+    for cell in &d.cells {
+        let channel = CHANNELS.iter().position(|c| *c == cell.channel).unwrap_or(0);
+        let key = (channel, cell.phase);
+        if !columns.contains(&key) {
+            columns.push(key);
+        }
+        rows.entry(&cell.run).or_default().insert(key, (cell.gap, cell.significant));
+    }
+    columns.sort_unstable();
+    out.push_str("<h2>Where in the data: gap of the recalibrated model, in units of the floor</h2><div style=\"overflow-x:auto\"><table><tr><th>run</th>");
+    for (channel, phase) in &columns {
+        let name = CHANNELS[*channel].split("_n").next().unwrap_or("").replace('_', " ");
+        let _ = write!(out, "<th>{}<br>{phase}</th>", escape(&name));
+    }
+    out.push_str("</tr>");
+    for (run, cells) in &rows {
+        let _ = write!(out, "<tr><td>{}</td>", escape(run));
+        for key in &columns {
+            match cells.get(key) {
+                Some((g, significant)) => {
+                    let heat = if *significant { (g.ln() / 3.5).clamp(0.0, 1.0) } else { 0.0 };
+                    let _ = write!(
+                        out,
+                        "<td style=\"background:rgba(209,73,91,{heat:.2})\">{g:.1}</td>"
+                    );
+                }
+                None => out.push_str("<td></td>"),
+            }
+        }
+        out.push_str("</tr>");
+    }
+    out.push_str("</table></div><p class=\"note\">1 is the floor; white cells are not significant (Benjamini-Hochberg, 5 %).</p>");
+}
+
+fn overlays(d: &Diagnosis, out: &mut String) {
+    let best = diagnose::best_cause(&d.weighed);
+    let models =
+        [json::params_of(d, &Cause::None), json::params_of(d, &best)];
+    let names = decide::names(&d.bench, &d.fits, &best);
+    let _ = write!(
+        out,
+        "<h2>Runs</h2><p><span style=\"color:{}\">measured</span>, <span style=\"color:{}\">recalibrated</span>, \
+         <span style=\"color:{}\">with {}</span>. Friction force over time; edge velocity over road speed against \
+         friction force (second half); spectrum of the edge velocity.</p>",
+        COLOURS[0],
+        COLOURS[1],
+        COLOURS[2],
+        escape(&names.join(" + "))
+    );
+    let simulated: Vec<Vec<Option<Record>>> = d
+        .campaign
+        .runs
+        .par_iter()
+        .map(|run| models.iter().map(|m| d.bench.simulate(m, &run.spec).ok()).collect())
+        .collect();
+    for (run, records) in d.campaign.runs.iter().zip(&simulated) {
+        let mut all = vec![&run.record];
+        all.extend(records.iter().flatten());
+        overlay(d, run, &all, out);
+    }
+}
+
+fn overlay(d: &Diagnosis, run: &Run, records: &[&Record], out: &mut String) {
+    let _ = write!(out, "<details open><summary>{}</summary><div class=\"row\">", escape(&run.spec.file));
+    let channel = if run.spec.mean_pressure_pa > 0.0 { FRICTION } else { VELOCITY };
+    let mut traces = Vec::new();
+    let mut cycles = Vec::new();
+    let mut spectra = Vec::new();
+    let step = 1.0 / d.campaign.plan.sampling_rate;
+    for (record, colour) in records.iter().zip(COLOURS) {
+        let millis: Vec<f64> = record.time.iter().map(|t| t * 1e3).collect();
+        if let Some(values) = &record.channel[channel] {
+            traces.push((millis, values.clone(), colour));
+        }
+        let Some(velocity) = &record.channel[VELOCITY] else { continue };
+        if let (Some(force), true) = (&record.channel[FRICTION], channel == FRICTION) {
+            let half = velocity.len() / 2;
+            let slip: Vec<f64> = (half..velocity.len())
+                .map(|i| road_speed(&d.campaign.plan, &run.spec, record.time[i]) - velocity[i])
+                .collect();
+            cycles.push((slip, force[half..].to_vec(), colour));
+        }
+        let weights = hann(velocity.len());
+        let offset = mean(velocity, &weights);
+        let frequencies: Vec<f64> = (1..160).map(|k| 50.0 * f64::from(k)).collect();
+        let levels: Vec<f64> = frequencies
+            .iter()
+            .map(|f| 10.0 * (power(amplitude(velocity, &weights, offset, step, *f)) + 1e-7).log10())
+            .collect();
+        spectra.push((frequencies.iter().map(|f| f / 1e3).collect(), levels, colour));
+    }
+    for (title, unit, of, width) in [
+        ("time", ["ms", if channel == FRICTION { "N" } else { "m/s" }], &traces, 430.0),
+        ("limit cycle", ["m/s", "N"], &cycles, 230.0),
+        ("spectrum", ["kHz", "dB"], &spectra, 280.0),
+    ] {
+        if !of.is_empty() {
+            let of: Vec<_> =
+                of.iter().map(|(x, y, c): &(Vec<f64>, Vec<f64>, &str)| (&x[..], &y[..], *c)).collect();
+            out.push_str(&lines(title, unit, &of, [width, 170.0]));
+        }
+    }
+    out.push_str("</div></details>");
+}
+
+fn parameters(d: &Diagnosis, out: &mut String) {
+    let best = diagnose::best_cause(&d.weighed);
+    for (title, cause) in [("of the recalibrated model", Cause::None), ("with the effect", best)] {
+        let _ = write!(
+            out,
+            "<h2>Parameters {title}</h2><table><tr><th>parameter</th><th>prior</th><th>fitted</th>\
+             <th>std</th><th>unit</th><th>sigmas from prior</th></tr>"
+        );
+        for p in json::parameters(d, &cause) {
+            let number = |key: &str| p[key].as_f64().unwrap_or(f64::NAN);
+            let _ = write!(
+                out,
+                "<tr><td>{}</td><td>{:.4e}</td><td>{:.4e}</td><td>{:.1e}</td><td>{}</td><td>{:+.2}</td></tr>",
+                p["name"].as_str().unwrap_or(""),
+                number("prior"),
+                number("value"),
+                number("std"),
+                p["unit"].as_str().unwrap_or(""),
+                number("sigmas_from_prior")
+            );
+        }
+        out.push_str("</table>");
+    }
+}
+
+fn experiments(d: &Diagnosis, out: &mut String) {
+    if d.experiments.is_empty() {
+        return;
+    }
+    out.push_str("<h2>What to measure next</h2><table><tr><th>run</th><th>road speed</th><th>pressure</th><th>dwell</th><th>tells apart</th><th>expected nats</th></tr>");
+    for e in &d.experiments {
+        let _ = write!(
+            out,
+            "<tr><td>{}</td><td>{:.3} m/s</td><td>{:.0} kPa</td><td>{:.0} ms</td><td>{} / {}</td><td>{:.1}</td></tr>",
+            escape(&e.run.file),
+            e.run.road_speed_m_s,
+            e.run.mean_pressure_pa / 1e3,
+            e.run.dwell_s * 1e3,
+            escape(&e.between[0]),
+            escape(&e.between[1]),
+            e.gain
+        );
+    }
+    out.push_str("</table>");
+}
+
+fn provenance(d: &Diagnosis, out: &mut String) {
+    let _ = write!(
+        out,
+        "<h2>Provenance</h2><p class=\"note\">Version {}, seed {}, {} simulations, {:.0} s, data {:016x}, \
+         {} runs used of {}. A named effect is a class of models that the data are consistent with, no proof \
+         of a mechanism.</p>",
+        env!("CARGO_PKG_VERSION"),
+        d.settings.seed,
+        d.bench.simulations(),
+        d.seconds,
+        d.campaign.hash(),
+        d.campaign.runs.len(),
+        d.campaign.plan.runs.len()
+    );
+}

@@ -1,0 +1,204 @@
+//! One run of a campaign with given parameters, as the rig would have measured it.
+
+use super::campaign::{Plan, Record, RunKind, RunSpec};
+use crate::block::{Shape, TreadBlock};
+use crate::drive::{Pose, Segment};
+use crate::error::Fault;
+use crate::params::{table, NormalDrive, Params, Value};
+use crate::reduction::Reduction;
+use crate::scenario::{self, Inputs, Scenario, Slide};
+use std::sync::Arc;
+
+/// Names of the datasheet and of the parameters they mean.
+pub const DATASHEET: [(&str, &str); 12] = [
+    ("young_modulus_pa", "rubber.young_modulus"),
+    ("poisson_ratio", "rubber.poisson_ratio"),
+    ("density_kg_m3", "rubber.density"),
+    ("stiffness_damping_s", "rubber.stiffness_damping"),
+    ("friction_mu_inf", "friction.mu_inf"),
+    ("friction_mu_drop", "friction.mu_drop"),
+    ("friction_decay_speed_m_s", "friction.decay_speed"),
+    ("friction_smoothing_speed_m_s", "friction.smoothing_speed"),
+    ("friction_pressure_exponent", "friction.pressure_exponent"),
+    ("contact_reference_pressure_pa", "contact.reference_pressure"),
+    ("contact_depth_m", "contact.depth"),
+    ("friction_reference_pressure_pa", "friction.reference_pressure"),
+];
+
+/// Elements along and up.
+const FIT_ELEMENTS: (usize, usize) = (6, 4);
+/// Fixed-interface modes up to this frequency [Hz].
+const FIT_BOUND: f64 = 14e3;
+/// Tolerance of the integrator.
+const FIT_TOLERANCE: f64 = 3e-3;
+/// Height above the road at which the struck block hangs [m]; the measured approach is minus this.
+const HANGING: f64 = 1.0;
+/// Speed of the blow at the tread face [m/s].
+const BLOW: f64 = 0.3;
+
+/// Sets the parameter `name`; `false` if it does not exist.
+pub fn set(params: &mut Params, name: &str, value: f64) -> bool {
+    table::find(name).is_some_and(|spec| (spec.set)(params, &Value::Real(value)))
+}
+
+/// The base model at the datasheet's values.
+pub fn nominal(plan: &Plan) -> Params {
+    let mut params = Params::default();
+    params.block.length = plan.block.length_m;
+    params.block.height = plan.block.height_m;
+    params.block.width = plan.block.width_m;
+    params.carriage.mass = plan.rig.load_carriage_mass_kg;
+    params.carriage.damping = plan.rig.load_carriage_damping_n_s_m;
+    params.wear.coefficient = 0.0;
+    // Enough for the floor of the comparison, and several times faster than the default.
+    params.solver.elements_along = FIT_ELEMENTS.0;
+    params.solver.elements_up = FIT_ELEMENTS.1;
+    params.solver.frequency_bound = FIT_BOUND;
+    params.solver.tolerance = FIT_TOLERANCE;
+    for (key, name) in DATASHEET {
+        if let Some(datum) = plan.nominal.get(key) {
+            set(&mut params, name, datum.value);
+        }
+    }
+    params
+}
+
+/// Simulates runs of one campaign; the reduction is made once.
+#[derive(Clone, Debug)]
+pub struct Simulator {
+    plan: Plan,
+    reduction: Arc<Reduction>,
+}
+
+impl Simulator {
+    /// For the block of `plan`.
+    ///
+    /// # Errors
+    /// What stops the reduction.
+    pub fn new(plan: &Plan) -> Result<Self, Fault> {
+        let reduction = Arc::new(Shape::of(&nominal(plan)).reduce()?);
+        Ok(Self { plan: plan.clone(), reduction })
+    }
+
+    /// The run as the rig would have measured it up to `until` [s], without noise, at the campaign's
+    /// sampling rate.
+    ///
+    /// # Errors
+    /// What stops the block.
+    pub fn run(&self, params: &Params, spec: &RunSpec, until: f64) -> Result<Record, Fault> {
+        let until = until.min(spec.duration_s);
+        let mut params = params.clone();
+        params.drive.normal = match spec.kind {
+            RunKind::Ringdown => NormalDrive::Trajectory,
+            _ => NormalDrive::Load,
+        };
+        let mut block = TreadBlock::with_reduction(&params, Arc::clone(&self.reduction))?;
+        let mut sampler = Sampler::new(&self.plan, until);
+        match spec.kind {
+            RunKind::Ringdown => self.ring(&mut block, until, &mut sampler)?,
+            _ => self.slide(&mut block, spec, until, &mut sampler)?,
+        }
+        Ok(sampler.record)
+    }
+
+    fn ring(
+        &self,
+        block: &mut TreadBlock,
+        until: f64,
+        sampler: &mut Sampler,
+    ) -> Result<(), Fault> {
+        let step = 1.0 / self.plan.sampling_rate;
+        let pose = Pose { z: self.plan.block.height_m + HANGING, ..Pose::default() };
+        block.initialize(0.0, pose)?;
+        block.strike(BLOW);
+        sampler.push(0.0, block);
+        for k in 1..=rows(until, step) {
+            block.advance(step, &Segment::still(pose))?;
+            sampler.push(k as f64 * step, block);
+        }
+        Ok(())
+    }
+
+    fn slide(
+        &self,
+        block: &mut TreadBlock,
+        spec: &RunSpec,
+        until: f64,
+        sampler: &mut Sampler,
+    ) -> Result<(), Fault> {
+        let step = 1.0 / self.plan.sampling_rate;
+        // Rest changes nothing without a memory in the rubber or in the friction.
+        let rests = !block.params().effect.eq(&Params::default().effect);
+        let dwell = if rests { (spec.dwell_s / step).round() * step } else { 0.0 };
+        let slide = motion(&self.plan, spec, dwell);
+        let plan = scenario::Plan {
+            step,
+            duration: until + dwell,
+            inputs: Inputs::Exact,
+        };
+        scenario::run(block, &Scenario::Slide(slide), &plan, |t, block| {
+            let t = t - dwell;
+            if t > -0.5 * step {
+                sampler.push(t, block);
+            }
+            Ok(())
+        })
+    }
+}
+
+/// Road motion and load of a run.
+fn motion(plan: &Plan, spec: &RunSpec, dwell: f64) -> Slide {
+    let end = spec.road_speed_end_m_s.unwrap_or(spec.road_speed_m_s);
+    Slide {
+        speed: spec.road_speed_m_s,
+        speed_end: end,
+        sweep: if spec.kind == RunKind::SpeedRamp { spec.duration_s } else { 0.0 },
+        start_ramp: plan.rig.start_ramp_s,
+        dwell,
+        load: spec.mean_pressure_pa * plan.block.length_m * plan.block.width_m,
+    }
+}
+
+/// Road speed [m/s] of a run at `t` [s].
+pub fn road_speed(plan: &Plan, spec: &RunSpec, t: f64) -> f64 {
+    motion(plan, spec, 0.0).road_speed(t)
+}
+
+/// Number of samples after the first.
+fn rows(duration: f64, step: f64) -> usize {
+    (duration / step + 1e-6).floor().max(0.0) as usize
+}
+
+/// Collects what the rig's channels would show.
+struct Sampler {
+    record: Record,
+    height: f64,
+}
+
+impl Sampler {
+    fn new(plan: &Plan, until: f64) -> Self {
+        let count = rows(until, 1.0 / plan.sampling_rate) + 1;
+        let column = || Vec::with_capacity(count);
+        let record =
+            Record { time: column(), channel: std::array::from_fn(|_| Some(column())) };
+        Self { record, height: plan.block.height_m }
+    }
+
+    fn push(&mut self, t: f64, block: &TreadBlock) {
+        let out = block.outputs();
+        let [give, give_rate] = block.give();
+        let values = [
+            out.contact_force[0],
+            out.contact_force[1],
+            out.run_in_velocity[0] + give_rate,
+            out.run_in_displacement[0] + give,
+            self.height - out.carriage_z,
+        ];
+        self.record.time.push(t);
+        for (column, value) in self.record.channel.iter_mut().zip(values) {
+            if let Some(column) = column {
+                column.push(value);
+            }
+        }
+    }
+}
