@@ -7,28 +7,28 @@
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 
-pub mod error;
-pub mod pack;
-pub mod params;
-pub mod effects;
-pub mod mesh;
-pub mod fe;
-pub mod reduction;
-pub mod contact;
-pub mod drive;
-pub mod dynamics;
 pub mod block;
-pub mod fmi;
-#[cfg(feature = "cli")]
-pub mod columns;
-pub mod scenario;
-pub mod metrics;
-#[cfg(feature = "cli")]
-pub mod study;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "cli")]
+pub mod columns;
+pub mod contact;
+pub mod drive;
+pub mod dynamics;
+pub mod effects;
+pub mod error;
+pub mod fe;
+pub mod fmi;
+#[cfg(feature = "cli")]
 pub mod gap;
+pub mod mesh;
+pub mod metrics;
+pub mod pack;
+pub mod params;
+pub mod reduction;
+pub mod scenario;
+#[cfg(feature = "cli")]
+pub mod study;
 
 pub use block::TreadBlock;
 pub use error::{Fault, Problem};

@@ -285,9 +285,7 @@ fn a_slow_sensor_keeps_the_mean_and_loses_the_vibration() {
 
 fn block_at_rest(params: &Params) -> Outputs {
     let mut block = block(params);
-    block
-        .initialize(0.0, tread_block::drive::Pose { load: LOAD, ..Default::default() })
-        .unwrap();
+    block.initialize(0.0, tread_block::drive::Pose { load: LOAD, ..Default::default() }).unwrap();
     block.outputs().clone()
 }
 

@@ -12,7 +12,6 @@ fn compound() -> Params {
     load::from_toml(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
-
 #[test]
 fn the_short_blocks_have_the_papers_frequencies() {
     // Table 1 of the paper; 10 % is what the issue allows any cell.

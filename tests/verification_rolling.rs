@@ -17,8 +17,20 @@ struct Case {
 }
 
 const CASES: [Case; 2] = [
-    Case { name: "roll-1", height: 0.010, first_slip: 6.1e-3, window: (6.5e-3, 11.8e-3), sign: -1.0 },
-    Case { name: "roll-2", height: 0.008, first_slip: 4.4e-3, window: (8.5e-3, 21.2e-3), sign: 1.0 },
+    Case {
+        name: "roll-1",
+        height: 0.010,
+        first_slip: 6.1e-3,
+        window: (6.5e-3, 11.8e-3),
+        sign: -1.0,
+    },
+    Case {
+        name: "roll-2",
+        height: 0.008,
+        first_slip: 4.4e-3,
+        window: (8.5e-3, 21.2e-3),
+        sign: 1.0,
+    },
 ];
 
 /// Time, tangential and normal force of the road, displacement of the run-in edge.
@@ -82,12 +94,22 @@ fn rolling_is_the_independent_solution_within_the_tolerances_of_the_project() {
                 .filter(|(r, _)| r[0] < case.first_slip)
                 .map(|(r, f)| (r[column] - f[column]).abs() / range)
                 .fold(0.0, f64::max);
-            println!("{} {name} up to the first slip: {:.2} % of the range", case.name, 100.0 * worst);
+            println!(
+                "{} {name} up to the first slip: {:.2} % of the range",
+                case.name,
+                100.0 * worst
+            );
             assert!(worst < 0.03, "{} {name}: {worst}", case.name);
         }
-        let ((f_expected, a_expected), (f, a)) = (stick_slip(&expected, case), stick_slip(&found, case));
+        let ((f_expected, a_expected), (f, a)) =
+            (stick_slip(&expected, case), stick_slip(&found, case));
         let (f_error, a_error) = (f / f_expected - 1.0, a / a_expected - 1.0);
-        println!("{}: frequency {:+.2} %, amplitude {:+.2} %", case.name, 100.0 * f_error, 100.0 * a_error);
+        println!(
+            "{}: frequency {:+.2} %, amplitude {:+.2} %",
+            case.name,
+            100.0 * f_error,
+            100.0 * a_error
+        );
         assert!(f_error.abs() < 0.01, "{}: {f} Hz for {f_expected}", case.name);
         assert!(a_error.abs() < 0.03, "{}: {a} m for {a_expected}", case.name);
     }

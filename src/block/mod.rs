@@ -199,7 +199,10 @@ impl TreadBlock {
                 problems.push(Problem::new(
                     spec.name,
                     table::show(spec, &(spec.get)(params)),
-                    format!("{} as at initialization", table::show(spec, &(spec.get)(&self.params))),
+                    format!(
+                        "{} as at initialization",
+                        table::show(spec, &(spec.get)(&self.params))
+                    ),
                     "set fixed parameters before initialization",
                 ));
             }

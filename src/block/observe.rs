@@ -90,8 +90,7 @@ impl TreadBlock {
         } else {
             0.0
         };
-        out.friction_power =
-            t.tangential.iter().zip(&stations.slip).map(|(f, v)| -f * v).sum();
+        out.friction_power = t.tangential.iter().zip(&stations.slip).map(|(f, v)| -f * v).sum();
         out.pressure = stations.at(&t.pressure).map(|p| p.max(0.0));
         out.sliding_speed = stations.at(&stations.slip);
         shares(&self.face.area, stations, self.params.friction.smoothing_speed, out);
@@ -136,8 +135,7 @@ impl TreadBlock {
             road[dof.axis] += state.base_acceleration[j];
         }
         let base = [cos * road[0] + sin * road[1], -sin * road[0] + cos * road[1]];
-        let prescribed =
-            [cos * driven[0] + sin * driven[1], -sin * driven[0] + cos * driven[1]];
+        let prescribed = [cos * driven[0] + sin * driven[1], -sin * driven[0] + cos * driven[1]];
         let mut rate = [linear.block_mass * base[0], linear.block_mass * base[1]];
         let mut turning = linear.block_mass * 0.5 * linear.node_z * base[0];
         for m in 0..linear.modes() {

@@ -118,7 +118,8 @@ const UM: Option<DisplayUnit> = Some(DisplayUnit { name: "um", factor: 1e6 });
 const KPA: Option<DisplayUnit> = Some(DisplayUnit { name: "kPa", factor: 1e-3 });
 const MG: Option<DisplayUnit> = Some(DisplayUnit { name: "mg", factor: 1e6 });
 const MM_S: Option<DisplayUnit> = Some(DisplayUnit { name: "mm/s", factor: 1e3 });
-const DEG: Option<DisplayUnit> = Some(DisplayUnit { name: "deg", factor: 180.0 / std::f64::consts::PI });
+const DEG: Option<DisplayUnit> =
+    Some(DisplayUnit { name: "deg", factor: 180.0 / std::f64::consts::PI });
 
 /// The inputs, in the order of [`Pose`].
 #[rustfmt::skip]

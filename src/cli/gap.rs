@@ -182,9 +182,10 @@ fn run_diagnose(
             eprint!("\r{:3.0} %  {what}, about {left:.0} s left          ", 100.0 * share);
         }
     };
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs).build().map_err(|e| {
-        Fault::File { path: "threads".into(), reason: e.to_string() }
-    })?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(jobs)
+        .build()
+        .map_err(|e| Fault::File { path: "threads".into(), reason: e.to_string() })?;
     let diagnosis = pool.install(|| diagnose::diagnose(campaign, settings, &progress))?;
     if shown {
         eprintln!();

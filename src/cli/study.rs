@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use super::output::{self, Done, Stop};
 use crate::error::Fault;
 use crate::params::{load, Params};
+use crate::study;
 use crate::study::identify::objective::Fineness;
 use crate::study::report::{html, Study};
-use crate::study;
 
 const EXAMPLES: &str = "\
 Examples:

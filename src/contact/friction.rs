@@ -236,7 +236,8 @@ mod tests {
     #[test]
     fn the_default_law_is_the_one_of_the_measurement_campaigns() {
         // Closed form of the campaigns' README at p = 400 kPa, v = 0.2 m/s, written out here.
-        let by_hand = FRAC_2_PI * (20.0_f64).atan()
+        let by_hand = FRAC_2_PI
+            * (20.0_f64).atan()
             * (1.6_f64).powf(-0.1)
             * (0.5 + 0.75 * (-2.0_f64 / 3.0).exp());
         let law = Law::new(&Friction::default(), None);

@@ -70,7 +70,8 @@ impl Table {
         let mut points = Vec::new();
         for p in [50e3, 100e3, 200e3, 400e3, 800e3] {
             for v in [1e-3, 1e-2, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6] {
-                let mu = (1.2 - 0.25 * (1.0_f64 + v / 0.1).ln()) * (1.1 - 0.05 * f64::log2(p / 50e3));
+                let mu =
+                    (1.2 - 0.25 * (1.0_f64 + v / 0.1).ln()) * (1.1 - 0.05 * f64::log2(p / 50e3));
                 points.push((p, v, mu));
             }
         }

@@ -92,11 +92,7 @@ impl Linear {
             base.push(BaseDof { axis: 0, mass, damping, stiffness });
         }
         Self {
-            omega2: fill(
-                reduction.lambda.iter().map(|l| l * e_over_rho).collect(),
-                modes,
-                1.0,
-            ),
+            omega2: fill(reduction.lambda.iter().map(|l| l * e_over_rho).collect(), modes, 1.0),
             nodes,
             stride,
             damping: rubber.stiffness_damping,

@@ -207,8 +207,7 @@ impl FlatMatrices {
         }
         for i in 0..n {
             for j in 0..=i {
-                let sum: f64 =
-                    (0..n).map(|k| self.p[k * stride + i] * full(n + k, j)).sum();
+                let sum: f64 = (0..n).map(|k| self.p[k * stride + i] * full(n + k, j)).sum();
                 self.b[i * stride + j] = full(i, j) - sum;
                 self.b[j * stride + i] = full(i, j) - sum;
             }

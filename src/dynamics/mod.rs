@@ -6,15 +6,15 @@ pub mod equilibrium;
 pub mod kinematics;
 pub mod linear;
 pub mod matrices;
-pub mod state;
 pub mod newton;
 pub mod stage;
+pub mod state;
 pub mod step;
 pub mod tr_bdf2;
 
 pub use energy::Ledger;
-pub use linear::{BaseDof, Linear};
 pub use kinematics::{kinematics, Kinematics};
+pub use linear::{BaseDof, Linear};
 pub use stage::Stage;
 pub use state::State;
 pub use step::{Integrator, Settings, Statistics};

@@ -11,8 +11,9 @@ use super::stage::Stage;
 /// resistance: far from the solution the tangent of a steeper fall overshoots, near it only the
 /// tangent converges fast.
 const STEEPEST_FALL: [f64; 2] = [0.3, 0.95];
-/// Iterations after which the solution is taken to be near.
-const FAR: usize = 5;
+/// Iterations in which the solution is taken to be near. Before them it may be far; after them the
+/// fall is too steep for the tangent, and the flatter slope creeps to a solution instead.
+const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
 
 /// A direction and the buffers to find it.
 #[derive(Clone, Debug)]
@@ -54,7 +55,7 @@ impl Stage {
     /// d_n = A⁻¹ φ − Pᵀ (d_t + δ_t) (theory eq. 3.9).
     #[inline(always)]
     pub(super) fn flat_direction(&mut self, m: &FlatMatrices, iteration: usize) -> bool {
-        let steepest_fall = STEEPEST_FALL[usize::from(iteration > FAR)];
+        let steepest_fall = STEEPEST_FALL[usize::from(NEAR.contains(&iteration))];
         let n = &mut self.newton;
         let stride = self.slip.len();
         for ((d, v), free) in n.difference.iter_mut().zip(&self.v).zip(&self.v_free) {
@@ -105,7 +106,7 @@ impl Stage {
         motion: &Kinematics,
         iteration: usize,
     ) -> bool {
-        let steepest_fall = STEEPEST_FALL[usize::from(iteration > FAR)];
+        let steepest_fall = STEEPEST_FALL[usize::from(NEAR.contains(&iteration))];
         let n = &mut self.newton;
         let (nodes, stride) = (n.nodes, self.slip.len());
         let size = 2 * nodes;
@@ -151,27 +152,27 @@ impl Stage {
         true
     }
 
-    /// Goes along the direction; returns the largest change of a velocity.
+    /// Goes along the direction; returns the largest change of a velocity that it asked for.
     ///
     /// A tangential speed that would change its sign stops at zero: friction is concave on either
-    /// side, so from there the iteration cannot overshoot again. The forces follow along the
-    /// tangent, so that they and the velocities satisfy the linear equations to rounding.
+    /// side, so from there the iteration cannot overshoot again. The last step
+    /// is whole: its forces follow along the tangent, so that they and the velocities satisfy the
+    /// linear equations to rounding.
     #[inline(always)]
     pub(super) fn take_direction(&mut self, motion: &Kinematics, tolerance: f64) -> f64 {
         let n = &mut self.newton;
         let stride = self.slip.len();
         let [sin, cos] = motion.sin_cos;
-        let mut change: f64 = 0.0;
+        let change = n.direction.iter().fold(0.0_f64, |largest, d| largest.max(d.abs()));
+        let near = change < tolerance;
         let (vx, vz) = self.v.split_at_mut(stride);
         let (fx, fz) = self.force.split_at_mut(stride);
         let (direction_x, direction_z) = n.direction.split_at(stride);
         for i in 0..n.nodes {
             let (mut dx, dz) = (direction_x[i], direction_z[i]);
-            change = change.max(dx.abs()).max(dz.abs());
             let slip = self.slip[i];
-            let over_road = cos * dx - sin * dz;
-            let crosses = slip * (slip + over_road) < 0.0;
-            if crosses && over_road.abs() > tolerance {
+            let crosses = slip * (slip + cos * dx - sin * dz) < 0.0;
+            if crosses && !near {
                 dx = (sin * dz - slip) / cos;
             }
             let [xx, xz, zx, zz] = n.slopes[i];

@@ -20,7 +20,7 @@ pub struct Convergence {
 }
 
 /// Iterations after which a stage is given up and the step made smaller.
-const MAX_ITERATIONS: usize = 30;
+const MAX_ITERATIONS: usize = 150;
 /// Iterations after which the full Newton matrix is used.
 const FLAT_ITERATIONS: usize = 12;
 
@@ -157,8 +157,7 @@ impl Stage {
             let stretch = self.base[j] + a * velocity;
             let coupling = &matrices.base_coupling[j * modes..(j + 1) * modes];
             let inertia: f64 = dense::dot(coupling, &self.scratch) - dense::dot(coupling, &self.w);
-            h[j] = a * (external - dof.damping * velocity - dof.stiffness * stretch)
-                - inertia;
+            h[j] = a * (external - dof.damping * velocity - dof.stiffness * stretch) - inertia;
         }
         self.add_face_velocity(linear, matrices, motion, h);
         h
@@ -305,7 +304,6 @@ impl Stage {
 /// Change of the sliding speeds, as a share of the smoothing speed, at which Newton's method stops;
 /// it converges quadratically, so the error left is about the square of it.
 const CHANGE_TOLERANCE: f64 = 1e-3;
-
 
 fn times_2x2(matrix: &[f64; 4], [x, y]: [f64; 2]) -> [f64; 2] {
     [matrix[0] * x + matrix[1] * y, matrix[2] * x + matrix[3] * y]

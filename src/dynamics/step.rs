@@ -85,7 +85,13 @@ impl Integrator {
     }
 
     /// Opens an energy ledger at the state as it stands.
-    pub fn open_ledger(&mut self, linear: &Linear, face: &Face, state: &State, compression: &[f64]) {
+    pub fn open_ledger(
+        &mut self,
+        linear: &Linear,
+        face: &Face,
+        state: &State,
+        compression: &[f64],
+    ) {
         let stored = energy::stored(linear, face, state, compression);
         self.step.keep_power = true;
         self.step.powers = Default::default();

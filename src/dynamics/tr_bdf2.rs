@@ -184,14 +184,8 @@ impl TrBdf2 {
             stage.u[c] = self.u[c] + a * self.v[c];
             stage.v[c] = self.v[c] + face_velocity[c / nodes];
         }
-        let solved = stage.solve(
-            linear,
-            face,
-            matrices,
-            &ends[1],
-            &self.gap,
-            &state.friction_factor,
-        );
+        let solved =
+            stage.solve(linear, face, matrices, &ends[1], &self.gap, &state.friction_factor);
         self.count(solved, state.time, a)?;
         let (stage, middle) = (&self.stage, &mut self.middle);
         for m in 0..modes {
@@ -207,8 +201,7 @@ impl TrBdf2 {
         }
         for j in 0..linear.base.len() {
             middle.base_velocity[j] = stage.base_velocity_end[j];
-            middle.base_acceleration[j] =
-                (stage.base_velocity_end[j] - stage.base_velocity[j]) / a;
+            middle.base_acceleration[j] = (stage.base_velocity_end[j] - stage.base_velocity[j]) / a;
         }
         let face_velocity = free_face_velocity(linear, &ends[1], &stage.base_velocity_end);
         for (c, (own, v)) in middle.v.iter_mut().zip(&stage.v).enumerate() {
@@ -248,7 +241,8 @@ impl TrBdf2 {
             }
         }
         for j in 0..linear.base.len() {
-            stage.base[j] = state.base[j] + weight * (state.base_velocity[j] + middle.base_velocity[j]);
+            stage.base[j] =
+                state.base[j] + weight * (state.base_velocity[j] + middle.base_velocity[j]);
             stage.base_velocity[j] = state.base_velocity[j]
                 + weight * (state.base_acceleration[j] + middle.base_acceleration[j]);
         }
@@ -257,14 +251,8 @@ impl TrBdf2 {
             // First guess: the change of the first stage goes on.
             stage.v[c] += (1.0 - GAMMA) / GAMMA * (middle.v[c] - self.v[c]);
         }
-        let solved = stage.solve(
-            linear,
-            face,
-            matrices,
-            &ends[2],
-            &self.gap,
-            &state.friction_factor,
-        );
+        let solved =
+            stage.solve(linear, face, matrices, &ends[2], &self.gap, &state.friction_factor);
         self.count(solved, state.time, a)?;
         if self.keep_power {
             self.powers[2] = energy::power(linear, &self.stage, &ends[2]);
@@ -306,7 +294,9 @@ impl TrBdf2 {
         for m in 0..linear.modes() {
             let at = |k: usize| linear.coupling_along(m, self.inertia[k]);
             let z = h
-                * (ERROR[0] * state.w[m] + ERROR[1] * self.middle.w[m] + ERROR[2] * self.trial.w[m]);
+                * (ERROR[0] * state.w[m]
+                    + ERROR[1] * self.middle.w[m]
+                    + ERROR[2] * self.trial.w[m]);
             let w = h
                 * (ERROR[0] * (state.dw[m] - at(0))
                     + ERROR[1] * self.middle.dw[m]

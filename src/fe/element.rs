@@ -13,10 +13,7 @@ const GAUSS: [(f64, f64); 3] =
 
 /// Quadratic Lagrange polynomials at the nodes −1, 0, 1 and their derivatives, at `xi`.
 fn lagrange(xi: f64) -> ([f64; 3], [f64; 3]) {
-    (
-        [0.5 * xi * (xi - 1.0), 1.0 - xi * xi, 0.5 * xi * (xi + 1.0)],
-        [xi - 0.5, -2.0 * xi, xi + 0.5],
-    )
+    ([0.5 * xi * (xi - 1.0), 1.0 - xi * xi, 0.5 * xi * (xi + 1.0)], [xi - 0.5, -2.0 * xi, xi + 0.5])
 }
 
 /// Stiffness C = ∫ Bᵀ D B dA and consistent mass M = ∫ Nᵀ N dA of a `dx` × `dz` [m] rectangle, for

@@ -198,9 +198,8 @@ pub fn read_plan(path: &Path) -> Result<Plan, Fault> {
     if !problems.is_empty() {
         return Err(Fault::Invalid(problems));
     }
-    let noise = CHANNELS.map(|name| {
-        file.channels.get(name).and_then(|c| c.get("noise_std")).and_then(number)
-    });
+    let noise = CHANNELS
+        .map(|name| file.channels.get(name).and_then(|c| c.get("noise_std")).and_then(number));
     Ok(Plan {
         id: file.id,
         block: file.block,
@@ -256,13 +255,16 @@ fn read_record(
     warnings: &mut Vec<Problem>,
 ) -> Result<(Record, u64), Problem> {
     let unreadable = |reason: String| {
-        Problem::new(&spec.file, reason, "a readable CSV file", "the run is left out; restore its file")
+        Problem::new(
+            &spec.file,
+            reason,
+            "a readable CSV file",
+            "the run is left out; restore its file",
+        )
     };
     let bytes = std::fs::read(path).map_err(|e| unreadable(e.to_string()))?;
-    let mut reader = csv::ReaderBuilder::new()
-        .flexible(true)
-        .trim(csv::Trim::All)
-        .from_reader(bytes.as_slice());
+    let mut reader =
+        csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes.as_slice());
     let header = reader.headers().map_err(|e| unreadable(e.to_string()))?.clone();
     let place = |name: &str| header.iter().position(|h| h.trim_start_matches('\u{feff}') == name);
     let mut record = Record::default();

@@ -107,9 +107,8 @@ pub fn weigh(fits: &Fits) -> Vec<Weighed> {
 
 /// Names of the effects of a cause.
 pub fn names(bench: &Bench, fits: &Fits, cause: &Cause) -> Vec<String> {
-    let of = |h: &Hypothesis| {
-        h.added.iter().map(|c| bench.specs[c.effect].effect.to_string()).collect()
-    };
+    let of =
+        |h: &Hypothesis| h.added.iter().map(|c| bench.specs[c.effect].effect.to_string()).collect();
     match cause {
         Cause::None => Vec::new(),
         Cause::Unknown => vec!["unknown".to_string()],
@@ -171,11 +170,10 @@ fn best_module(bench: &Bench, fits: &Fits) -> Option<String> {
 
 /// Share of the explicable gap per module: what the best effect of the module takes off ln(G²).
 pub fn modules(bench: &Bench, fits: &Fits) -> Vec<(String, f64)> {
-    let mut out: Vec<(String, f64)> =
-        ["dynamic", "friction", "contact", "wear", "rig", "sensor"]
-            .iter()
-            .map(|m| (m.to_string(), 0.0))
-            .collect();
+    let mut out: Vec<(String, f64)> = ["dynamic", "friction", "contact", "wear", "rig", "sensor"]
+        .iter()
+        .map(|m| (m.to_string(), 0.0))
+        .collect();
     let base = (fits.base.level + BLUR).ln();
     for single in &fits.singles {
         let module = bench.specs[single.added[0].effect].module.name();

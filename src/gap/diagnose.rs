@@ -190,8 +190,7 @@ fn how_far(
         sham: others.get(others.len() / 2).copied().unwrap_or(0.0),
         held_out: judged.to_vec(),
     };
-    let closed =
-        squares.iter().map(|s| s.as_ref().map(|s| held_out::closed(&base, s))).collect();
+    let closed = squares.iter().map(|s| s.as_ref().map(|s| held_out::closed(&base, s))).collect();
     (gap, closed)
 }
 
@@ -233,7 +232,11 @@ fn next_experiments(bench: &Bench, fits: &Fits, weighed: &[Weighed]) -> Vec<Expe
     let hypotheses = [&rivals[0].cause, &rivals[1].cause].map(|c| decide::fit_of(fits, c));
     let between = [0, 1].map(|k| {
         let names = decide::names(bench, fits, &rivals[k].cause);
-        if names.is_empty() { "none".to_string() } else { names.join(" + ") }
+        if names.is_empty() {
+            "none".to_string()
+        } else {
+            names.join(" + ")
+        }
     });
     let params = hypotheses.map(|h| bench.params(&h.added, &h.fit.x));
     let mut out: Vec<Experiment> = candidates()

@@ -136,7 +136,13 @@ impl Cutter<'_> {
         self.plan.noise[channel].unwrap_or(0.0)
     }
 
-    fn push(&mut self, channel: usize, aspect: Aspect, part: usize, [value, noise, scale]: [f64; 3]) {
+    fn push(
+        &mut self,
+        channel: usize,
+        aspect: Aspect,
+        part: usize,
+        [value, noise, scale]: [f64; 3],
+    ) {
         let key = Key { run: self.run, channel, aspect, part };
         self.out.push(Feature { key, value, noise, scale });
     }
@@ -166,11 +172,12 @@ impl Cutter<'_> {
                 let value = piece.iter().sum::<f64>() / BIN as f64;
                 // An error of the frequency adds up to an error of the phase.
                 let late = (bin as f64 + 0.5) * BIN as f64 * self.step / 1e-3;
-                self.push(channel, Aspect::Onset, bin / 4, [
-                    value,
-                    noise,
-                    size * (1.0 + late * late).sqrt(),
-                ]);
+                self.push(
+                    channel,
+                    Aspect::Onset,
+                    bin / 4,
+                    [value, noise, size * (1.0 + late * late).sqrt()],
+                );
             }
         }
     }
@@ -194,9 +201,7 @@ impl Cutter<'_> {
                 }
             }
             let last = end.min(at + 10);
-            let bottom = (at..last)
-                .min_by(|a, b| travel(*a).total_cmp(&travel(*b)))
-                .unwrap_or(at);
+            let bottom = (at..last).min_by(|a, b| travel(*a).total_cmp(&travel(*b))).unwrap_or(at);
             let time = (at.max(1) as f64 * self.step).ln();
             let depth = travel(bottom) / top.max(1e-9);
             self.push(DISPLACEMENT, Aspect::Snap, part, [time, 0.0, 1.0]);
@@ -274,9 +279,7 @@ impl Cutter<'_> {
     fn stick(&mut self, part: usize, from: usize, to: usize, weights: &[f64]) {
         let Some(velocity) = self.record.channel[VELOCITY].as_ref() else { return };
         let slip: Vec<f64> = (from..to)
-            .map(|i| {
-                road_speed(self.plan, self.spec, self.record.time[i]) - velocity[i]
-            })
+            .map(|i| road_speed(self.plan, self.spec, self.record.time[i]) - velocity[i])
             .collect();
         let stuck = |v: f64| 1.0 / (1.0 + (v / STICK_SPEED).powi(2));
         let share = slip.iter().zip(weights).map(|(v, w)| w * stuck(*v)).sum::<f64>();

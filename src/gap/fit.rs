@@ -237,13 +237,15 @@ fn of_weights<'a>(
 ) -> impl Iterator<Item = f64> + 'a {
     let present = residuals.iter().zip(bench.weight.iter().zip(&bench.measured));
     present.filter(|(r, _)| !r.is_empty()).flat_map(move |(_, (weights, features))| {
-        weights.iter().zip(features).map(move |(w, feature)| {
-            if view.counts(&feature.key) {
-                *w
-            } else {
-                0.0
-            }
-        })
+        weights.iter().zip(features).map(
+            move |(w, feature)| {
+                if view.counts(&feature.key) {
+                    *w
+                } else {
+                    0.0
+                }
+            },
+        )
     })
 }
 
@@ -302,10 +304,7 @@ pub fn deviations(bench: &Bench, fit: &Fit) -> Vec<f64> {
 
 /// Broyden's rank-one update: the least change of J that explains the step.
 fn broyden(jacobian: &DMatrix<f64>, from: &Fit, to: &Fit) -> DMatrix<f64> {
-    let step = DVector::from_iterator(
-        from.x.len(),
-        to.x.iter().zip(&from.x).map(|(a, b)| a - b),
-    );
+    let step = DVector::from_iterator(from.x.len(), to.x.iter().zip(&from.x).map(|(a, b)| a - b));
     let square = step.norm_squared();
     if square < 1e-10 {
         return jacobian.clone();

@@ -32,13 +32,14 @@ pub fn choose(runs: &[RunSpec]) -> Vec<usize> {
     let candidates: Vec<usize> = plain
         .iter()
         .copied()
-        .filter(|r| inside(|s| s.road_speed_m_s, *r) && inside(|s| s.mean_pressure_pa, *r) && !twin(*r))
+        .filter(|r| {
+            inside(|s| s.road_speed_m_s, *r) && inside(|s| s.mean_pressure_pa, *r) && !twin(*r)
+        })
         .collect();
     let most = (plain.len() / 4).max(1);
     let step = (candidates.len() as f64 / most as f64).max(1.0);
-    let mut chosen: Vec<usize> = (0..most)
-        .filter_map(|k| candidates.get((k as f64 * step) as usize).copied())
-        .collect();
+    let mut chosen: Vec<usize> =
+        (0..most).filter_map(|k| candidates.get((k as f64 * step) as usize).copied()).collect();
     chosen.dedup();
     chosen
 }
@@ -46,8 +47,9 @@ pub fn choose(runs: &[RunSpec]) -> Vec<usize> {
 /// Runs to be fitted: all but the held-out ones, repetitions, and slow ramps that are as good as at
 /// rest within `horizon` [s].
 pub fn to_fit(runs: &[RunSpec], held_out: &[usize], horizon: f64) -> Vec<usize> {
-    let same = |a: &RunSpec, b: &RunSpec| RunSpec { file: String::new(), ..a.clone() }
-        == RunSpec { file: String::new(), ..b.clone() };
+    let same = |a: &RunSpec, b: &RunSpec| {
+        RunSpec { file: String::new(), ..a.clone() } == RunSpec { file: String::new(), ..b.clone() }
+    };
     let slow = |r: &RunSpec| {
         let gain = r.road_speed_end_m_s.unwrap_or(0.0).abs() * horizon / r.duration_s;
         r.kind == RunKind::SpeedRamp && r.road_speed_m_s.abs() + gain < 0.15

@@ -218,8 +218,7 @@ fn start_effect(
         best = better(best, fit);
     }
     let Some(mut fit) = best else { return (base.clone(), tried) };
-    let own: Vec<usize> =
-        if method.recalibrate { (at..fit.x.len()).collect() } else { vec![at] };
+    let own: Vec<usize> = if method.recalibrate { (at..fit.x.len()).collect() } else { vec![at] };
     let columns = columns(bench, &fit, &own, of);
     fit.jacobian = base.jacobian.as_ref().map(|j| {
         let mut wide = j.clone().resize_horizontally(coordinates.len(), 0.0);

@@ -129,7 +129,18 @@ impl Bench {
             .collect();
         let simulator = Simulator::new(&plan)?;
         let simulations = AtomicUsize::new(0);
-        Ok(Self { plan, runs, simulator, horizon, measured, inverse, weight, specs, base, simulations })
+        Ok(Self {
+            plan,
+            runs,
+            simulator,
+            horizon,
+            measured,
+            inverse,
+            weight,
+            specs,
+            base,
+            simulations,
+        })
     }
 
     /// Number of simulations so far.
@@ -141,8 +152,8 @@ impl Bench {
     pub fn coordinates(&self, added: &[Choice]) -> Vec<Coordinate> {
         let of = |c: &Choice| self.specs[c.effect].forms[c.form].params;
         let effects = added.iter().flat_map(|c| of(c).iter());
-        let effects = effects
-            .map(|p| Coordinate { name: p.name, centre: p.centre, spread: p.spread });
+        let effects =
+            effects.map(|p| Coordinate { name: p.name, centre: p.centre, spread: p.spread });
         self.base.iter().copied().chain(effects).collect()
     }
 

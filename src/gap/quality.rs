@@ -36,7 +36,12 @@ pub fn of_plan(block: &BlockSize, rig: &Rig, runs: &[RunSpec]) -> Vec<Problem> {
     need("rig.load_carriage_mass_kg", mass, mass > 0.0, "more than 0");
     for run in runs {
         let length = run.duration_s;
-        need(&format!("{} duration_s", run.file), length, length > 0.0 && length < 10.0, "0 to 10 s");
+        need(
+            &format!("{} duration_s", run.file),
+            length,
+            length > 0.0 && length < 10.0,
+            "0 to 10 s",
+        );
         if run.kind != RunKind::Ringdown {
             let p = run.mean_pressure_pa;
             let allowed = "1 kPa to 100 MPa";
@@ -152,7 +157,10 @@ fn channel_fault(
     for extreme in [low, high] {
         let hits = values.iter().filter(|v| **v == extreme).count();
         if noise > 0.0 && hits as f64 > CLIPPED_SHARE * values.len() as f64 {
-            return Some((format!("{hits} samples at {extreme}"), "a range that the signal fits in"));
+            return Some((
+                format!("{hits} samples at {extreme}"),
+                "a range that the signal fits in",
+            ));
         }
     }
     None

@@ -160,8 +160,7 @@ fn heat_map(d: &Diagnosis, out: &mut String) {
 
 fn overlays(d: &Diagnosis, out: &mut String) {
     let best = diagnose::best_cause(&d.weighed);
-    let models =
-        [json::params_of(d, &Cause::None), json::params_of(d, &best)];
+    let models = [json::params_of(d, &Cause::None), json::params_of(d, &best)];
     let names = decide::names(&d.bench, &d.fits, &best);
     let _ = write!(
         out,
@@ -187,7 +186,11 @@ fn overlays(d: &Diagnosis, out: &mut String) {
 }
 
 fn overlay(d: &Diagnosis, run: &Run, records: &[&Record], out: &mut String) {
-    let _ = write!(out, "<details open><summary>{}</summary><div class=\"row\">", escape(&run.spec.file));
+    let _ = write!(
+        out,
+        "<details open><summary>{}</summary><div class=\"row\">",
+        escape(&run.spec.file)
+    );
     let channel = if run.spec.mean_pressure_pa > 0.0 { FRICTION } else { VELOCITY };
     let mut traces = Vec::new();
     let mut cycles = Vec::new();
@@ -221,8 +224,10 @@ fn overlay(d: &Diagnosis, run: &Run, records: &[&Record], out: &mut String) {
         ("spectrum", ["kHz", "dB"], &spectra, 280.0),
     ] {
         if !of.is_empty() {
-            let of: Vec<_> =
-                of.iter().map(|(x, y, c): &(Vec<f64>, Vec<f64>, &str)| (&x[..], &y[..], *c)).collect();
+            let of: Vec<_> = of
+                .iter()
+                .map(|(x, y, c): &(Vec<f64>, Vec<f64>, &str)| (&x[..], &y[..], *c))
+                .collect();
             out.push_str(&lines(title, unit, &of, [width, 170.0]));
         }
     }

@@ -191,7 +191,11 @@ fn reliability(cases: &[Case]) -> Vec<Json> {
 fn confusion(cases: &[Case]) -> Json {
     let mut out: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
     let name = |names: &[String]| {
-        if names.is_empty() { "none".to_string() } else { sorted(names).join("+") }
+        if names.is_empty() {
+            "none".to_string()
+        } else {
+            sorted(names).join("+")
+        }
     };
     for case in cases {
         *out.entry(name(&case.truth)).or_default().entry(name(&case.top.0)).or_default() += 1;
@@ -201,7 +205,9 @@ fn confusion(cases: &[Case]) -> Json {
 
 /// A table for people.
 pub fn table(cases: &[Case]) -> String {
-    let mut out = String::from("campaign   truth -> most probable (probability; on truth) decision closed seconds\n");
+    let mut out = String::from(
+        "campaign   truth -> most probable (probability; on truth) decision closed seconds\n",
+    );
     for c in cases {
         let name = |n: &[String]| if n.is_empty() { "none".to_string() } else { n.join("+") };
         out.push_str(&format!(

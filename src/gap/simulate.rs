@@ -101,12 +101,7 @@ impl Simulator {
         Ok(sampler.record)
     }
 
-    fn ring(
-        &self,
-        block: &mut TreadBlock,
-        until: f64,
-        sampler: &mut Sampler,
-    ) -> Result<(), Fault> {
+    fn ring(&self, block: &mut TreadBlock, until: f64, sampler: &mut Sampler) -> Result<(), Fault> {
         let step = 1.0 / self.plan.sampling_rate;
         let pose = Pose { z: self.plan.block.height_m + HANGING, ..Pose::default() };
         block.initialize(0.0, pose)?;
@@ -131,11 +126,7 @@ impl Simulator {
         let rests = !block.params().effect.eq(&Params::default().effect);
         let dwell = if rests { (spec.dwell_s / step).round() * step } else { 0.0 };
         let slide = motion(&self.plan, spec, dwell);
-        let plan = scenario::Plan {
-            step,
-            duration: until + dwell,
-            inputs: Inputs::Exact,
-        };
+        let plan = scenario::Plan { step, duration: until + dwell, inputs: Inputs::Exact };
         scenario::run(block, &Scenario::Slide(slide), &plan, |t, block| {
             let t = t - dwell;
             if t > -0.5 * step {
@@ -179,8 +170,7 @@ impl Sampler {
     fn new(plan: &Plan, until: f64) -> Self {
         let count = rows(until, 1.0 / plan.sampling_rate) + 1;
         let column = || Vec::with_capacity(count);
-        let record =
-            Record { time: column(), channel: std::array::from_fn(|_| Some(column())) };
+        let record = Record { time: column(), channel: std::array::from_fn(|_| Some(column())) };
         Self { record, height: plan.block.height_m }
     }
 

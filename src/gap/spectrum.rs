@@ -53,8 +53,7 @@ pub fn fundamental(signal: &[f64], weights: &[f64], step: f64) -> f64 {
     let offset = mean(signal, weights);
     let bin = 1.0 / (signal.len() as f64 * step * OVERSAMPLING);
     let (first, last) = ((SEARCH[0] / bin) as usize + 1, (SEARCH[1] / bin) as usize);
-    let level =
-        |k: f64| power(amplitude(signal, weights, offset, step, k * bin)).max(1e-300).ln();
+    let level = |k: f64| power(amplitude(signal, weights, offset, step, k * bin)).max(1e-300).ln();
     let mut best = (first, f64::NEG_INFINITY);
     for k in first..=last {
         let here = level(k as f64);

@@ -11,9 +11,12 @@ pub fn lines(title: &str, unit: [&str; 2], of: &[Line<'_>], [width, height]: [f6
     let (left, right, top, bottom) = (52.0, 8.0, 18.0, 26.0);
     let range = |pick: fn(&Line<'_>) -> Vec<f64>| {
         let all = of.iter().flat_map(pick).filter(|v| v.is_finite());
-        let (a, b) =
-            all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-        if b > a { (a, b) } else { (a - 1.0, a + 1.0) }
+        let (a, b) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        if b > a {
+            (a, b)
+        } else {
+            (a - 1.0, a + 1.0)
+        }
     };
     let (x0, x1) = range(|l| l.0.to_vec());
     let (y0, y1) = range(|l| l.1.to_vec());

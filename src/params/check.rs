@@ -15,7 +15,10 @@ pub fn value(spec: &ParamSpec, value: &Value) -> Option<Problem> {
                 return None;
             }
             let unit = if unit == "1" { "" } else { unit };
-            complain(format!("{min:e} to {max:e} {unit}").trim().to_string(), "give a value in SI units inside that range")
+            complain(
+                format!("{min:e} to {max:e} {unit}").trim().to_string(),
+                "give a value in SI units inside that range",
+            )
         }
         (Kind::Integer { min, max }, Value::Integer(i)) => {
             if (min..=max).contains(i) {

@@ -102,13 +102,14 @@ fn convert(spec: &ParamSpec, value: &toml::Value) -> Option<Value> {
     match (spec.kind, value) {
         (Kind::Real { .. }, toml::Value::Float(x)) => Some(Value::Real(*x)),
         (Kind::Real { .. }, toml::Value::Integer(i)) => Some(Value::Real(*i as f64)),
-        (Kind::Integer { .. }, toml::Value::Integer(i)) => i32::try_from(*i).ok().map(Value::Integer),
+        (Kind::Integer { .. }, toml::Value::Integer(i)) => {
+            i32::try_from(*i).ok().map(Value::Integer)
+        }
         (Kind::Boolean, toml::Value::Boolean(b)) => Some(Value::Boolean(*b)),
         (Kind::Text, toml::Value::String(t)) => Some(Value::Text(t.clone())),
-        (Kind::Enumeration { items, .. }, toml::Value::String(t)) => items
-            .iter()
-            .position(|item| item.name == t)
-            .map(|at| Value::Integer(at as i32 + 1)),
+        (Kind::Enumeration { items, .. }, toml::Value::String(t)) => {
+            items.iter().position(|item| item.name == t).map(|at| Value::Integer(at as i32 + 1))
+        }
         _ => None,
     }
 }

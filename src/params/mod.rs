@@ -171,7 +171,12 @@ pub struct Contact {
 
 impl Default for Contact {
     fn default() -> Self {
-        Self { form: ContactForm::Exponential, reference_pressure: 80e3, depth: 40e-6, exponent: 2.0 }
+        Self {
+            form: ContactForm::Exponential,
+            reference_pressure: 80e3,
+            depth: 40e-6,
+            exponent: 2.0,
+        }
     }
 }
 

@@ -50,11 +50,7 @@ fn lowest(
         let m = image.transpose() * (mass * &image);
         let (values, vectors) = dense_pencil(&k, &m)?;
         basis = image * vectors;
-        let moved = values
-            .iter()
-            .zip(&last)
-            .map(|(a, b)| ((a - b) / a).abs())
-            .fold(0.0, f64::max);
+        let moved = values.iter().zip(&last).map(|(a, b)| ((a - b) / a).abs()).fold(0.0, f64::max);
         last.copy_from_slice(&values[..wanted]);
         if moved < TOLERANCE {
             break;
@@ -78,10 +74,7 @@ fn start_vectors(rows: usize, columns: usize) -> DMatrix<f64> {
 ///
 /// # Errors
 /// [`Fault::NotFinite`] if `m` is not positive definite.
-pub fn dense_pencil(
-    k: &DMatrix<f64>,
-    m: &DMatrix<f64>,
-) -> Result<(Vec<f64>, DMatrix<f64>), Fault> {
+pub fn dense_pencil(k: &DMatrix<f64>, m: &DMatrix<f64>) -> Result<(Vec<f64>, DMatrix<f64>), Fault> {
     let broken = || Fault::NotFinite { what: "mass matrix of the block".into(), time: 0.0 };
     let lower = m.clone().cholesky().ok_or_else(broken)?.unpack();
     let half = lower.solve_lower_triangular(k).ok_or_else(broken)?;

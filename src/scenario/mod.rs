@@ -185,7 +185,12 @@ pub fn go_on(
 ///
 /// # Errors
 /// See [`TreadBlock::advance`].
-pub fn advance(block: &mut TreadBlock, scenario: &Scenario, t: f64, next: f64) -> Result<(), Fault> {
+pub fn advance(
+    block: &mut TreadBlock,
+    scenario: &Scenario,
+    t: f64,
+    next: f64,
+) -> Result<(), Fault> {
     const SLIVER: f64 = 1e-11;
     let mut at = t;
     while at < next {

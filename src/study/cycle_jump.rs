@@ -65,11 +65,8 @@ impl Wearing<'_> {
             let ds = jump.min(distance - s);
             let ahead: Vec<f64> = depth.iter().zip(&rate).map(|(w, r)| w + ds * r).collect();
             let next = self.rate(&mut block, &ahead)?;
-            let local = rate
-                .iter()
-                .zip(&next)
-                .map(|(a, b)| 0.5 * ds * (a - b).abs())
-                .fold(0.0, f64::max);
+            let local =
+                rate.iter().zip(&next).map(|(a, b)| 0.5 * ds * (a - b).abs()).fold(0.0, f64::max);
             jumps += 1;
             if local <= tolerance || ds < distance / 400.0 {
                 for ((w, a), b) in depth.iter_mut().zip(&rate).zip(&next) {

@@ -44,9 +44,10 @@ pub fn fig_2(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     Ok(Study {
         name: "fig-2",
         title: "Friction characteristic and contact stiffness",
-        notes: "Lines: the identified laws. Dots: an example of measured data, made up to show the \
+        notes:
+            "Lines: the identified laws. Dots: an example of measured data, made up to show the \
                 format (examples/friction-grid.csv); the paper's own are not published."
-            .to_string(),
+                .to_string(),
         tables: vec![
             ("fig-2-friction.csv".to_string(), csv("pressure_pa,speed_m_s,mu", rows)),
             (

@@ -178,9 +178,8 @@ fn tables(
     });
     let names: Vec<String> =
         laws.iter().map(|l| l.name.to_lowercase().replace('-', "_") + "_m").collect();
-    let rows = (0..worn[0].x.len()).map(|i| {
-        std::iter::once(worn[0].x[i]).chain(worn.iter().map(|w| w.depth[i])).collect()
-    });
+    let rows = (0..worn[0].x.len())
+        .map(|i| std::iter::once(worn[0].x[i]).chain(worn.iter().map(|w| w.depth[i])).collect());
     let checked = (0..brute.x.len()).map(|i| vec![brute.x[i], jumped.depth[i], brute.depth[i]]);
     vec![
         ("fig-3-rate.csv".to_string(), csv("pressure_pa,speed_m_s,rate_kg_m3,model_kg_m3", rates)),

@@ -85,7 +85,8 @@ fn edge_cycles(run: &Run) -> Result<(Vec<(f64, Cycle)>, Vec<f64>), Fault> {
     const FINE_STEP: f64 = 5e-6;
     let load = run.pressure * run.params.block.length * run.params.block.width;
     let scenario = Scenario::Slide(Slide::constant(run.speed, load));
-    let mut block = TreadBlock::with_reduction(&run.params, Reductions::default().of(&run.params)?)?;
+    let mut block =
+        TreadBlock::with_reduction(&run.params, Reductions::default().of(&run.params)?)?;
     let nodes = run_in_nodes(&block);
     let mut motion: Vec<Vec<f64>> = vec![Vec::new(); nodes.len()];
     let plan = Plan { step: FINE_STEP, duration: DURATION, inputs: Inputs::Exact };
@@ -119,5 +120,10 @@ fn run_in_nodes(block: &TreadBlock) -> Vec<(usize, f64)> {
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
     let lowest = found.first().map_or(0.0, |f| f.1);
     let count = found.len();
-    found.into_iter().take(count.saturating_sub(1)).step_by(2).map(|(n, z)| (n, z - lowest)).collect()
+    found
+        .into_iter()
+        .take(count.saturating_sub(1))
+        .step_by(2)
+        .map(|(n, z)| (n, z - lowest))
+        .collect()
 }

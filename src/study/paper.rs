@@ -52,15 +52,7 @@ pub const TABLE_1: [Column; 4] = [
         height: 0.010,
         length: 0.015,
         f0: None,
-        cells: [
-            Hz(299.0),
-            Hz(373.0),
-            Hz(787.0),
-            Hz(1195.0),
-            Hz(1759.0),
-            Hz(2123.0),
-            Hz(2304.0),
-        ],
+        cells: [Hz(299.0), Hz(373.0), Hz(787.0), Hz(1195.0), Hz(1759.0), Hz(2123.0), Hz(2304.0)],
     },
     Column {
         name: "h6l15",

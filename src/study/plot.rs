@@ -119,7 +119,11 @@ fn draw(area: &Area, panel: &Panel) -> Result<(), String> {
 }
 
 fn finish<'a, X>(
-    mut chart: ChartContext<'a, SVGBackend<'a>, Cartesian2d<X, plotters::coord::types::RangedCoordf64>>,
+    mut chart: ChartContext<
+        'a,
+        SVGBackend<'a>,
+        Cartesian2d<X, plotters::coord::types::RangedCoordf64>,
+    >,
     panel: &Panel,
 ) -> Result<(), String>
 where
@@ -139,9 +143,7 @@ where
     for series in &panel.series {
         let color = COLORS[series.color % COLORS.len()];
         let drawn = match series.mark {
-            Mark::Line => {
-                chart.draw_series(LineSeries::new(series.points.iter().copied(), &color))
-            }
+            Mark::Line => chart.draw_series(LineSeries::new(series.points.iter().copied(), &color)),
             Mark::Dots => chart.draw_series(PointSeries::<_, _, Circle<_, _>, _>::new(
                 series.points.iter().copied(),
                 4,
@@ -170,7 +172,8 @@ where
 /// Range of a coordinate over all series, with a margin.
 fn range(panel: &Panel, pick: fn(&(f64, f64)) -> f64, logarithmic: bool) -> (f64, f64) {
     let all = panel.series.iter().flat_map(|s| s.points.iter().map(pick)).filter(|x| x.is_finite());
-    let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    let (low, high) =
+        all.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
     if low > high {
         return (0.1, 1.0);
     }

@@ -74,7 +74,9 @@ pub fn html(studies: &[Study], compound: &str) -> String {
             escape(&study.notes)
         ));
         if !study.verdicts.is_empty() {
-            out.push_str("<table><tr><th>statement of the paper</th><th>holds</th><th>number</th></tr>\n");
+            out.push_str(
+                "<table><tr><th>statement of the paper</th><th>holds</th><th>number</th></tr>\n",
+            );
             for v in &study.verdicts {
                 let (class, word) = if v.holds { ("yes", "yes") } else { ("no", "no") };
                 out.push_str(&format!(
@@ -90,7 +92,10 @@ pub fn html(studies: &[Study], compound: &str) -> String {
         }
         for (name, text) in &study.tables {
             if text.lines().count() <= 40 {
-                out.push_str(&format!("<details open><summary>{name}</summary>{}</details>\n", grid(text)));
+                out.push_str(&format!(
+                    "<details open><summary>{name}</summary>{}</details>\n",
+                    grid(text)
+                ));
             } else {
                 out.push_str(&format!("<p>Data: <code>{name}</code></p>\n"));
             }

@@ -229,7 +229,6 @@ pub fn fig_9(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
 /// Snaps after the sticking phase: from stuck (more than half of the contact) to sliding.
 fn reversals(passage: &Passage) -> usize {
     let [_, sticking, _, last] = passage.phases();
-    let stuck: Vec<bool> =
-        passage.rows[sticking..=last].iter().map(|r| r.stick > 0.5).collect();
+    let stuck: Vec<bool> = passage.rows[sticking..=last].iter().map(|r| r.stick > 0.5).collect();
     stuck.windows(2).filter(|w| w[0] && !w[1]).count()
 }

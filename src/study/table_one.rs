@@ -164,12 +164,19 @@ impl TableOne {
             let loud: Vec<f64> = cells.iter().map(|c| c.hz()).filter(|hz| *hz > 0.0).collect();
             loud.windows(2).all(|w| w[1] > w[0])
         });
-        let below = columns(&|cells| {
-            cells.iter().all(|c| c.column.f0.is_none_or(|f0| c.hz() <= f0))
-        });
+        let below =
+            columns(&|cells| cells.iter().all(|c| c.column.f0.is_none_or(|f0| c.hz() <= f0)));
         vec![
-            Verdict::new("median error at most 4 %", self.median_error() <= 0.04, per_cent(self.median_error())),
-            Verdict::new("no cell above 10 %", self.max_error() <= 0.10, per_cent(self.max_error())),
+            Verdict::new(
+                "median error at most 4 %",
+                self.median_error() <= 0.04,
+                per_cent(self.median_error()),
+            ),
+            Verdict::new(
+                "no cell above 10 %",
+                self.max_error() <= 0.10,
+                per_cent(self.max_error()),
+            ),
             Verdict::new(
                 "the right cells are silent",
                 wrong.is_empty(),

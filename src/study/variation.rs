@@ -117,7 +117,13 @@ impl Variation {
     /// One row per run: file name and CSV.
     pub fn summary(&self) -> (String, String) {
         let rows = self.runs.iter().map(|(run, _, m)| {
-            vec![run.value, m.frequency, m.displacement_amplitude, m.velocity_amplitude, m.stick_fraction]
+            vec![
+                run.value,
+                m.frequency,
+                m.displacement_amplitude,
+                m.velocity_amplitude,
+                m.stick_fraction,
+            ]
         });
         let header = format!(
             "{},model_hz,displacement_peak_to_peak_m,velocity_peak_to_peak_m_s,stick_fraction",
@@ -131,10 +137,18 @@ impl Variation {
         let rows = self.runs.iter().flat_map(|(run, t, _)| {
             let value = run.value;
             (0..t.time.len()).map(move |i| {
-                vec![value, t.time[i], t.run_in[i][0], t.run_in[i][1], t.run_out[i][0], t.run_out[i][1]]
+                vec![
+                    value,
+                    t.time[i],
+                    t.run_in[i][0],
+                    t.run_in[i][1],
+                    t.run_out[i][0],
+                    t.run_out[i][1],
+                ]
             })
         });
-        let header = format!("{},time_s,run_in_x_m,run_in_v_m_s,run_out_x_m,run_out_v_m_s", self.header);
+        let header =
+            format!("{},time_s,run_in_x_m,run_in_v_m_s,run_out_x_m,run_out_v_m_s", self.header);
         (format!("{}-traces.csv", self.name), csv(&header, rows.collect::<Vec<_>>()))
     }
 

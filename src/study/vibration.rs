@@ -64,8 +64,7 @@ pub fn fig_5(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
 /// Verdicts on how amplitude and frequency go with a quantity, over the runs that oscillate; `rises`:
 /// amplitude, frequency.
 fn trend(variation: &Variation, quantity: &str, rises: [bool; 2]) -> Vec<Verdict> {
-    let loud: Vec<&Ran> =
-        variation.runs.iter().filter(|r| r.2.frequency > 0.0).collect();
+    let loud: Vec<&Ran> = variation.runs.iter().filter(|r| r.2.frequency > 0.0).collect();
     let values = [
         ("amplitude", loud.iter().map(|r| r.2.displacement_amplitude).collect::<Vec<_>>()),
         ("frequency", loud.iter().map(|r| r.2.frequency).collect()),
@@ -80,7 +79,11 @@ fn trend(variation: &Variation, quantity: &str, rises: [bool; 2]) -> Vec<Verdict
                 (Some(a), Some(b)) if values.len() > 1 => change(*a, *b),
                 _ => "fewer than two runs oscillate".to_string(),
             };
-            Verdict::new(format!("{what} {word} with {quantity}"), steps && values.len() > 1, number)
+            Verdict::new(
+                format!("{what} {word} with {quantity}"),
+                steps && values.len() > 1,
+                number,
+            )
         })
         .collect()
 }
@@ -119,7 +122,12 @@ pub fn fig_6(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         Verdict::new(
             "a sticking phase at 100, 200 and 300 mm/s",
             stick[1..4].iter().all(|s| *s > 0.5),
-            format!("up to {:.0}, {:.0}, {:.0} % stuck", 1e2 * stick[1], 1e2 * stick[2], 1e2 * stick[3]),
+            format!(
+                "up to {:.0}, {:.0}, {:.0} % stuck",
+                1e2 * stick[1],
+                1e2 * stick[2],
+                1e2 * stick[3]
+            ),
         ),
         Verdict::new(
             "no prominent sticking phase at 400 mm/s",
@@ -207,7 +215,11 @@ pub fn fig_7(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     verdicts.push(Verdict::new(
         "the frequency falls where the amplitude rises",
         order.windows(2).all(|w| f[w[0]] > f[w[1]]),
-        order.iter().map(|i| format!("{:.0} um {:.0} Hz", 1e6 * x[*i], f[*i])).collect::<Vec<_>>().join(", "),
+        order
+            .iter()
+            .map(|i| format!("{:.0} um {:.0} Hz", 1e6 * x[*i], f[*i]))
+            .collect::<Vec<_>>()
+            .join(", "),
     ));
     Ok(Study {
         name: "fig-7",

@@ -91,9 +91,8 @@ mod tests {
         let mut points = Vec::new();
         for pressure in [100e3_f64, 250e3, 600e3] {
             for speed in [0.05_f64, 0.3, 1.0] {
-                let rate = 0.02
-                    * (pressure / REFERENCE.0).powf(1.1)
-                    * (speed / REFERENCE.1).powf(0.2);
+                let rate =
+                    0.02 * (pressure / REFERENCE.0).powf(1.1) * (speed / REFERENCE.1).powf(0.2);
                 points.push(Measured { pressure, speed, rate });
             }
         }

@@ -79,8 +79,8 @@ impl Cma {
         let d_s = 1.0 + c_s + 2.0 * (((mu_eff - 1.0) / (n + 1.0)).sqrt() - 1.0).max(0.0);
         let c_c = (4.0 + mu_eff / n) / (n + 4.0 + 2.0 * mu_eff / n);
         let c_1 = 2.0 / ((n + 1.3).powi(2) + mu_eff);
-        let c_mu = (2.0 * (mu_eff - 2.0 + 1.0 / mu_eff) / ((n + 2.0).powi(2) + mu_eff))
-            .min(1.0 - c_1);
+        let c_mu =
+            (2.0 * (mu_eff - 2.0 + 1.0 / mu_eff) / ((n + 2.0).powi(2) + mu_eff)).min(1.0 - c_1);
         let mut shift = DVector::zeros(self.mean.len());
         for (w, y) in self.weights.iter().zip(&steps) {
             shift += *w * y;

@@ -40,7 +40,11 @@ pub fn jacobian(problem: &Problem<'_>, x: &[f64], residuals: &[f64]) -> DMatrix<
                 residuals.len(),
                 moved.iter().zip(residuals).map(|(b, a)| {
                     let slope = (b - a) / step;
-                    if (b - a).abs() > 0.2 { 0.0 } else { slope }
+                    if (b - a).abs() > 0.2 {
+                        0.0
+                    } else {
+                        slope
+                    }
                 }),
             )
         })

@@ -40,7 +40,8 @@ pub fn markdown(task: &Task, found: &Identified) -> String {
     out.push_str("\n## Directions of the parameters, the best determined first\n\n");
     out.push_str("Components in unit intervals of the search ranges.\n\n");
     for direction in found.local.directions() {
-        let verdict = if direction.deviation < UNDETERMINED { "pinned down" } else { "not told apart" };
+        let verdict =
+            if direction.deviation < UNDETERMINED { "pinned down" } else { "not told apart" };
         let _ = writeln!(
             out,
             "- {verdict} (deviation {:.3}): {}",
