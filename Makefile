@@ -1,8 +1,9 @@
 # What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
 .DEFAULT_GOAL := help
-.PHONY: help setup fmu demo test bench release gap-check paper fuzz win64 docs clean
+.PHONY: help setup fmu demo test convergence release gap-check paper win64 docs clean
 
 PYTHON := .venv/bin/python
+CAMPAIGNS ?= ../shared/measurements/open
 
 help: ## This list
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | sort | expand -t 14
@@ -23,9 +24,9 @@ test: ## Set up and run every test
 	@packaging/setup.sh build run test
 	@packaging/test.sh
 
-bench: ## Time per step, against the stored budget
+convergence: ## Error over internal step and mesh: out/convergence/
 	@packaging/setup.sh build
-	@cargo bench
+	@cargo run --quiet --release --example convergence
 
 win64: ## Build the win64 library and run it under wine
 	@packaging/setup.sh build
@@ -35,18 +36,14 @@ release: ## The FMU for linux64 and win64, checked, with its checksums, in out/r
 	@packaging/setup.sh build run test
 	@packaging/release.sh
 
-gap-check: ## Diagnose the model's gap to the shared measurements
+gap-check: ## Diagnose the labelled campaigns (CAMPAIGNS=folder) and score the answers
 	@packaging/setup.sh build
-	@cargo run --quiet --release --bin tread -- gap check
+	@cargo run --quiet --release --bin tread -- gap check $(CAMPAIGNS)
 
 paper: ## The paper's studies on this model: out/paper/index.html, and their tests
 	@packaging/setup.sh build
 	@cargo run --quiet --release --bin tread -- study all --out out/paper
 	@cargo test --quiet --release --test study -- --include-ignored
-
-fuzz: ## Fuzz the C interface and the file readers, 60 s each (FUZZ_SECONDS=...)
-	@packaging/setup.sh build
-	@packaging/fuzz.sh
 
 docs: ## The book (docs/src, HTML where mdbook is installed) and the Rust documentation
 	@docs/build.sh

@@ -186,7 +186,7 @@ pub fn read_plan(path: &Path) -> Result<Plan, Fault> {
         ));
     }
     let rate = file.channels.get("sampling_rate_hz").and_then(number).unwrap_or(0.0);
-    if !(rate > 0.0) {
+    if rate.is_nan() || rate <= 0.0 {
         problems.push(Problem::new(
             "channels.sampling_rate_hz",
             rate.to_string(),
