@@ -163,11 +163,13 @@ impl Stage {
         let n = &mut self.newton;
         let stride = self.slip.len();
         let [sin, cos] = motion.sin_cos;
-        let change = n.direction.iter().fold(0.0_f64, |largest, d| largest.max(d.abs()));
+        let (direction_x, direction_z) = n.direction.split_at(stride);
+        // The padding is carried along with the face, which no direction accounts for.
+        let real = direction_x[..n.nodes].iter().chain(&direction_z[..n.nodes]);
+        let change = real.fold(0.0_f64, |largest, d| largest.max(d.abs()));
         let near = change < tolerance;
         let (vx, vz) = self.v.split_at_mut(stride);
         let (fx, fz) = self.force.split_at_mut(stride);
-        let (direction_x, direction_z) = n.direction.split_at(stride);
         for i in 0..n.nodes {
             let (mut dx, dz) = (direction_x[i], direction_z[i]);
             let slip = self.slip[i];
