@@ -29,6 +29,8 @@ pub mod reduction;
 pub mod scenario;
 #[cfg(feature = "cli")]
 pub mod study;
+#[cfg(feature = "cli")]
+pub mod sweep;
 
 pub use block::TreadBlock;
 pub use error::{Fault, Problem};

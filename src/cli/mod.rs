@@ -18,6 +18,7 @@ mod reference;
 mod simulate;
 mod study;
 mod summary;
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -68,6 +69,8 @@ enum Command {
     Identify(identify::Arguments),
     /// Repeat the paper's studies on this model
     Study(study::Arguments),
+    /// Run many points over any parameters: grid, one at a time, Latin hypercube, Sobol
+    Sweep(sweep::Arguments),
     /// Build, describe or check the FMU
     Fmu(fmu::Arguments),
     /// Diagnose the gap between measurements and the model: where, which effect, how far
@@ -92,6 +95,7 @@ pub fn main() -> ExitCode {
         Command::Metrics(arguments) => metrics::run(&arguments),
         Command::Identify(arguments) => identify::run(&arguments),
         Command::Study(arguments) => study::study(&arguments),
+        Command::Sweep(arguments) => sweep::run(&arguments),
         Command::Fmu(arguments) => fmu::run(&arguments),
         Command::Gap(arguments) => gap::run(&arguments),
         Command::Reference(arguments) => reference::run(&arguments, Arguments::command()),

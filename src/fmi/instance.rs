@@ -8,7 +8,7 @@ use super::settings::Settings;
 use super::stepping::Clock;
 use super::variables::{self, Source, Type, Variable};
 use super::Refusal;
-use crate::block::{OutputSpec, Outputs, TreadBlock, OUTPUTS};
+use crate::block::{OutputSpec, Outputs, Shape, TreadBlock, OUTPUTS};
 use crate::drive::{Pose, Predictor};
 use crate::params::{Params, Value, Variability};
 use std::ffi::CString;
@@ -48,8 +48,7 @@ impl Model {
     fn at_rest(&mut self, params: &Params, time: f64, pose: Pose) -> Result<&Outputs, Refusal> {
         if self.pristine.as_ref().is_none_or(|built| built.params() != params) {
             self.forget();
-            self.pristine = None;
-            self.pristine = Some(TreadBlock::new(params)?);
+            self.pristine = Some(rebuilt(self.pristine.take(), params)?);
         }
         if self.rest != Some((time, pose)) {
             self.forget();
@@ -97,6 +96,15 @@ impl Model {
         self.block = block;
         Ok(())
     }
+}
+
+/// A block of these parameters; the reduction of the one before serves where its shape is the same.
+fn rebuilt(before: Option<TreadBlock>, params: &Params) -> Result<TreadBlock, Refusal> {
+    let kept = before.filter(|block| Shape::of(block.params()) == Shape::of(params));
+    Ok(match kept {
+        Some(block) => TreadBlock::with_reduction(params, block.reduction().clone())?,
+        None => TreadBlock::new(params)?,
+    })
 }
 
 impl Instance {

@@ -208,7 +208,11 @@ impl Plan {
         (self.duration / self.step - 1e-9).ceil().max(0.0) as usize
     }
 
-    fn check(&self) -> Result<(), Fault> {
+    /// Checks step and duration.
+    ///
+    /// # Errors
+    /// [`Fault::Invalid`] with what is impossible about them.
+    pub fn check(&self) -> Result<(), Fault> {
         let problem = |what: &str, value: f64, allowed: &str| {
             Problem::new(what, value.to_string(), allowed, "change the [run] table")
         };
