@@ -1,6 +1,6 @@
 # What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
 .DEFAULT_GOAL := help
-.PHONY: help setup fmu demo test convergence release gap-check paper win64 docs clean
+.PHONY: help setup fmu demo test convergence release gap-check paper win64 docs clean chain
 
 PYTHON := .venv/bin/python
 CAMPAIGNS ?= ../shared/measurements/open
@@ -19,6 +19,12 @@ demo: ## Build the FMU, run it in fmpy, draw plots to out/demo/
 	@packaging/setup.sh build run
 	@packaging/linux64.sh
 	@$(PYTHON) demo/demo.py
+
+chain: ## Belt source, block and acoustic stage in three masters: pictures and sound in out/chain/
+	@packaging/setup.sh build run test
+	@packaging/linux64.sh
+	@packaging/chain.sh
+	@$(PYTHON) examples/chain/chain.py
 
 test: ## Set up and run every test
 	@packaging/setup.sh build run test

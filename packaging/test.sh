@@ -52,6 +52,7 @@ runner() {
 
 stage_lint() {
     check "format" cargo fmt --check
+    check "format of the chain" cargo fmt --check --manifest-path examples/chain/stages/Cargo.toml
     check "clippy" cargo clippy --quiet --all-targets -- -D warnings
 }
 
@@ -69,6 +70,7 @@ stage_fmu() {
     # The command line was built by the Rust tests; the library is built for old systems.
     check "build the FMU" packaging/linux64.sh
     check "exports, glibc, dependencies" packaging/check.sh out/binaries/linux64/TreadBlock.so
+    check "build the chain's FMUs" packaging/chain.sh
 }
 
 stage_python() {

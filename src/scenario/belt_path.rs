@@ -83,6 +83,24 @@ impl BeltPath {
         }
     }
 
+    /// Pose, velocity and acceleration at time `t` [s], the latter per s and s².
+    ///
+    /// With the signed slope α, x′ = (1 + slip)V − V cos α, z′ = −V sin α, α′ = −Vκ, and their
+    /// derivatives by the chain rule.
+    pub fn motion(&self, t: f64) -> [BeltSample; 3] {
+        let pose = self.at(t);
+        let s = 0.5 * self.contact_length + self.lead - self.speed * t;
+        let (sin, cos) = pose.angle.sin_cos();
+        let (curvature, growth) = self.curvature(s.abs());
+        let v = self.speed;
+        let (turning, spin_up) = (-v * curvature, v * v * growth.copysign(s));
+        let velocity =
+            BeltSample { time: t, x: (1.0 + self.slip) * v - v * cos, z: -v * sin, angle: turning };
+        let acceleration =
+            BeltSample { time: t, x: v * sin * turning, z: -v * cos * turning, angle: spin_up };
+        [pose, velocity, acceleration]
+    }
+
     /// Samples every `step` [s] from entry to exit.
     ///
     /// # Errors
@@ -115,6 +133,15 @@ impl BeltPath {
             sigma - 0.5
         };
         turned * self.blend_length / self.radius
+    }
+
+    /// Curvature κ [1/m] at the arc length `s` ≥ 0, and κ′ [1/m²].
+    fn curvature(&self, s: f64) -> (f64, f64) {
+        let w = self.blend_length;
+        let sigma = ((s - 0.5 * self.contact_length) / w + 0.5).clamp(0.0, 1.0);
+        let share = sigma.powi(3) * (10.0 + sigma * (6.0 * sigma - 15.0));
+        let growth = 30.0 * (sigma * (1.0 - sigma)).powi(2) / w;
+        (share / self.radius, growth / self.radius)
     }
 
     /// (∫cos θ, ∫sin θ) from 0 to `s` ≥ 0 [m]: Gauss' rule on panels that end where κ has its kinks.
@@ -217,6 +244,34 @@ mod tests {
         let middle = 0.5 * path.duration();
         let speed = (path.at(middle + 1e-5).x - path.at(middle - 1e-5).x) / 2e-5;
         assert!((speed + 0.5).abs() < 1e-9, "{speed}");
+    }
+
+    #[test]
+    fn velocity_and_acceleration_are_the_derivatives_of_the_pose() {
+        let path = BeltPath {
+            radius: 0.3,
+            contact_length: 0.12,
+            speed: 10.0,
+            slip: 0.03,
+            height: 0.0098,
+            blend_length: 0.02,
+            lead: 0.05,
+        };
+        // Central differences over 2 dt err by dt²/6 times the third derivative, below 1e-3 of the
+        // sizes that divide them here (10 m/s, 300 m/s² and so on).
+        let (dt, sizes) = (1e-6, [[10.0, 10.0, 33.0], [300.0, 300.0, 2e4]]);
+        for t in [1e-3, 4.2e-3, 5.5e-3, 11e-3, 16.2e-3, 17.7e-3, 20e-3] {
+            let [before, now, after] = [t - dt, t, t + dt].map(|t| path.motion(t));
+            for order in 1..3 {
+                let rows = |m: &[BeltSample; 3], k: usize| [m[k].x, m[k].z, m[k].angle];
+                let (low, high) = (rows(&before, order - 1), rows(&after, order - 1));
+                for (i, value) in rows(&now, order).into_iter().enumerate() {
+                    let difference = (high[i] - low[i]) / (2.0 * dt);
+                    let error = (value - difference).abs() / sizes[order - 1][i];
+                    assert!(error < 1e-3, "order {order}, {i} at {t}: {value} {difference}");
+                }
+            }
+        }
     }
 
     #[test]
