@@ -5,71 +5,131 @@ use crate::pack::{Pack, LANES};
 /// `out` += Σⱼ `columns`ⱼ xⱼ; `columns` holds column j at `j * out.len()`; `out` is full packs.
 #[inline(always)]
 pub fn add_columns(out: &mut [f64], columns: &[f64], x: &[f64]) {
-    let rows = out.len();
-    let mut at = 0;
-    // Two packs of rows at a time stay in registers while all columns pass.
-    while at + 2 * LANES <= rows {
-        let mut sums = [Pack::read(&out[at..]), Pack::read(&out[at + LANES..])];
-        for (column, f) in columns.chunks_exact(rows).zip(x) {
-            let f = Pack::splat(*f);
-            sums[0] = f.mul_add(Pack::read(&column[at..at + LANES]), sums[0]);
-            sums[1] = f.mul_add(Pack::read(&column[at + LANES..at + 2 * LANES]), sums[1]);
-        }
-        sums[0].write(&mut out[at..]);
-        sums[1].write(&mut out[at + LANES..]);
-        at += 2 * LANES;
-    }
-    while at < rows {
-        let mut sum = Pack::read(&out[at..]);
-        for (column, f) in columns.chunks_exact(rows).zip(x) {
-            sum = Pack::splat(*f).mul_add(Pack::read(&column[at..at + LANES]), sum);
-        }
-        sum.write(&mut out[at..]);
-        at += LANES;
+    let rows = out.len() / LANES;
+    let columns = columns.as_chunks().0;
+    let (mut at, mut rest) = (0, &mut *out.as_chunks_mut().0);
+    while !rest.is_empty() {
+        // As many rows at a time as registers hold while all columns pass.
+        let count = match rest.len() {
+            1 => add_rows::<1>(rest, columns, x, rows, at),
+            2 => add_rows::<2>(rest, columns, x, rows, at),
+            3 => add_rows::<3>(rest, columns, x, rows, at),
+            5 => add_rows::<5>(rest, columns, x, rows, at),
+            6 => add_rows::<6>(rest, columns, x, rows, at),
+            _ => add_rows::<4>(rest, columns, x, rows, at),
+        };
+        at += count;
+        rest = &mut rest[count..];
     }
 }
 
-/// Solves (`matrix` + diag(`diagonal`)) x = `x` in place by Gauss-Jordan elimination without pivoting,
-/// for positive definite matrices; `false` if a pivot is not positive. `matrix` is row-major with
-/// rows of `stride` numbers (full packs), of which the first `size` count; `work` is as large.
+/// [`add_columns`] for the first `N` packs of `out`, which are packs `at` and on of `rows` in a column.
 #[inline(always)]
-pub fn solve_with_diagonal(
-    matrix: &[f64],
-    diagonal: &[f64],
-    x: &mut [f64],
-    size: usize,
-    stride: usize,
-    work: &mut [f64],
-) -> bool {
-    work[..size * stride].copy_from_slice(&matrix[..size * stride]);
-    for i in 0..size {
-        work[i * stride + i] += diagonal[i];
+fn add_rows<const N: usize>(
+    out: &mut [[f64; LANES]],
+    columns: &[[f64; LANES]],
+    x: &[f64],
+    rows: usize,
+    at: usize,
+) -> usize {
+    let Some(out) = out.first_chunk_mut::<N>() else { return out.len() };
+    let mut sums = out.map(Pack);
+    for (column, f) in columns.chunks_exact(rows).zip(x) {
+        let Some(column) = column[at..].first_chunk::<N>() else { break };
+        let f = Pack::splat(*f);
+        for n in 0..N {
+            sums[n] = f.mul_add(Pack(column[n]), sums[n]);
+        }
     }
+    for n in 0..N {
+        out[n] = sums[n].0;
+    }
+    N
+}
+
+/// Inverts the first `size` rows and columns of a matrix whose symmetric part is positive definite, in
+/// place (Gauss-Jordan without pivoting); `false` if a pivot is not positive. Rows are full packs.
+#[inline(always)]
+pub fn invert_rows(matrix: &mut [f64], size: usize) -> bool {
+    let stride = size.div_ceil(LANES);
+    let packs = matrix.as_chunks_mut().0;
+    match stride {
+        1 => gauss_jordan::<1>(packs, size),
+        2 => gauss_jordan::<2>(packs, size),
+        3 => gauss_jordan::<3>(packs, size),
+        4 => gauss_jordan::<4>(packs, size),
+        _ => gauss_jordan_wide(packs, size, stride),
+    }
+}
+
+/// [`invert_rows`] for rows of `N` packs.
+#[inline(always)]
+fn gauss_jordan<const N: usize>(packs: &mut [[f64; LANES]], size: usize) -> bool {
+    let rows = &mut packs.as_chunks_mut::<N>().0[..size];
+    let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
     for k in 0..size {
-        let pivot = work[k * stride + k];
+        let (pack, lane) = (k / LANES, k % LANES);
+        let pivot = rows[k][pack][lane];
         if pivot.is_nan() || pivot <= 0.0 {
             return false;
         }
-        let inverse = 1.0 / pivot;
-        let (first, right) = (k / LANES * LANES, x[k]);
-        let (above, rest) = work[..size * stride].split_at_mut(k * stride);
-        let (row_k, below) = rest.split_at_mut(stride);
-        let (x_above, x_rest) = x[..size].split_at_mut(k);
-        let rows = above.chunks_exact_mut(stride).zip(x_above);
-        for (row, x) in rows.chain(below.chunks_exact_mut(stride).zip(&mut x_rest[1..])) {
-            let factor = row[k] * inverse;
-            *x -= factor * right;
-            let negative = Pack::splat(-factor);
-            for at in (first..stride).step_by(LANES) {
-                let updated = negative
-                    .mul_add(Pack::read(&row_k[at..at + LANES]), Pack::read(&row[at..at + LANES]));
-                updated.write(&mut row[at..at + LANES]);
+        // Masks instead of single numbers written: a row that was written in parts cannot be read
+        // as a whole until all parts have reached the cache.
+        let (mut keep, mut unit) = ([one; N], [zero; N]);
+        for n in 0..N {
+            if n == pack {
+                (keep[n], unit[n]) = (KEEP[lane], one - KEEP[lane]);
             }
         }
-        row_k[k] = inverse;
+        let inverse = Pack::splat(1.0 / pivot);
+        let mut pivot_row = [zero; N];
+        for n in 0..N {
+            pivot_row[n] = keep[n].mul_add(Pack(rows[k][n]), unit[n]) * inverse;
+        }
+        for row in rows.iter_mut() {
+            let negative = Pack::splat(-row[pack][lane]);
+            for n in 0..N {
+                row[n] = negative.mul_add(pivot_row[n], keep[n] * Pack(row[n])).0;
+            }
+        }
+        rows[k] = pivot_row.map(|part| part.0);
     }
+    true
+}
+
+/// Ones but for a zero in each lane.
+const KEEP: [Pack; LANES] = {
+    let mut keep = [Pack([1.0; LANES]); LANES];
+    let mut lane = 0;
+    while lane < LANES {
+        keep[lane].0[lane] = 0.0;
+        lane += 1;
+    }
+    keep
+};
+
+/// [`invert_rows`] for rows of any number of packs.
+#[inline(always)]
+fn gauss_jordan_wide(packs: &mut [[f64; LANES]], size: usize, stride: usize) -> bool {
     for k in 0..size {
-        x[k] *= work[k * stride + k];
+        let (pack, lane) = (k / LANES, k % LANES);
+        let (above, rest) = packs[..size * stride].split_at_mut(k * stride);
+        let (pivot_row, below) = rest.split_at_mut(stride);
+        let pivot = pivot_row[pack][lane];
+        if pivot.is_nan() || pivot <= 0.0 {
+            return false;
+        }
+        pivot_row[pack][lane] = 1.0;
+        for part in pivot_row.iter_mut() {
+            *part = (Pack(*part) * Pack::splat(1.0 / pivot)).0;
+        }
+        for row in above.chunks_exact_mut(stride).chain(below.chunks_exact_mut(stride)) {
+            let negative = Pack::splat(-row[pack][lane]);
+            row[pack][lane] = 0.0;
+            for (value, part) in row.iter_mut().zip(pivot_row.iter()) {
+                *value = negative.mul_add(Pack(*part), Pack(*value)).0;
+            }
+        }
     }
     true
 }
@@ -183,24 +243,19 @@ mod tests {
         assert!(factor(&mut lu, size));
         let mut by_lu = b.clone();
         solve(&lu, &mut by_lu);
-        let diagonal = vec![0.25; size];
         let stride = 16;
         let mut wide = vec![0.0; size * stride];
-        let mut shifted = a.clone();
         for i in 0..size {
             wide[i * stride..i * stride + size].copy_from_slice(&a[i * size..(i + 1) * size]);
-            shifted[i * size + i] += diagonal[i];
         }
-        let row = |i: usize| &shifted[i * size..(i + 1) * size];
-        let mut by_jordan: Vec<f64> = (0..size).map(|i| dot(row(i), &x)).collect();
-        let mut work = wide.clone();
-        assert!(solve_with_diagonal(&wide, &diagonal, &mut by_jordan, size, stride, &mut work));
+        assert!(invert_rows(&mut wide, size));
         let mut inverse = a;
         assert!(invert(&mut inverse, size));
         for i in 0..size {
             let by_inverse = dot(&inverse[i * size..(i + 1) * size], &b);
             assert!((by_lu[i] - x[i]).abs() < 1e-13 && (by_inverse - x[i]).abs() < 1e-13);
-            assert!((by_jordan[i] - x[i]).abs() < 1e-13);
+            let by_jordan = dot(&wide[i * stride..i * stride + size], &b);
+            assert!((by_jordan - x[i]).abs() < 1e-13);
         }
     }
 }

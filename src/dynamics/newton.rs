@@ -6,6 +6,7 @@ use super::kinematics::Kinematics;
 use super::linear::Linear;
 use super::matrices::{FlatMatrices, StageMatrices};
 use super::stage::Stage;
+use crate::contact::Traction;
 
 /// Largest fall of friction with speed that a direction follows, as a share of the block's own
 /// resistance: far from the solution the tangent of a steeper fall overshoots, near it only the
@@ -14,6 +15,11 @@ const STEEPEST_FALL: [f64; 2] = [0.3, 0.95];
 /// Iterations in which the solution is taken to be near. Before them it may be far; after them the
 /// fall is too steep for the tangent, and the flatter slope creeps to a solution instead.
 const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
+
+/// Iterations before which the inverse of an earlier iteration may serve, while slopes are near.
+const CHORDS: usize = 3;
+/// Change of a slope, as a share of the node's resistance, over which an inverse still serves.
+const SAME_SLOPE: f64 = 0.05;
 
 /// A direction and the buffers to find it.
 #[derive(Clone, Debug)]
@@ -25,8 +31,13 @@ pub(super) struct Newton {
     /// f_n + (assumed slope)·(v − v_free)_n [N].
     normal: Vec<f64>,
     product: Vec<f64>,
+    /// Pᵀ times a tangential velocity [m/s].
+    along: Vec<f64>,
     diagonal: Vec<f64>,
     matrix: Vec<f64>,
+    /// K⁻¹, column by column, for the slopes in `slopes`; see [`Self::renew_inverse`].
+    inverse: Vec<f64>,
+    known: bool,
     compact: Vec<f64>,
     /// −∂f/∂v per node in the block's frame: xx, xz, zx, zz [N s/m].
     slopes: Vec<[f64; 4]>,
@@ -41,8 +52,11 @@ impl Newton {
             difference: vec![0.0; 2 * stride],
             normal: vec![0.0; stride],
             product: vec![0.0; stride],
+            along: vec![0.0; stride],
             diagonal: vec![0.0; stride],
-            matrix: vec![0.0; (4 * nodes * nodes).max(stride * stride)],
+            matrix: vec![0.0; 4 * nodes * nodes],
+            inverse: vec![0.0; nodes * stride],
+            known: false,
             compact: vec![0.0; 2 * nodes],
             slopes: vec![[0.0; 4]; stride],
             nodes,
@@ -50,25 +64,62 @@ impl Newton {
     }
 }
 
+impl Newton {
+    /// The inverse is made anew before it is used again.
+    pub(super) fn forget(&mut self) {
+        self.known = false;
+    }
+
+    /// Keeps K⁻¹ = (B + g − c Pᵀ)⁻¹ for the slopes as they stand, unless it holds for slopes that
+    /// are near enough; `false` if K is not positive definite.
+    #[inline(always)]
+    fn renew_inverse(&mut self, m: &FlatMatrices, t: &Traction, iteration: usize) -> bool {
+        let steepest_fall = STEEPEST_FALL[usize::from(NEAR.contains(&iteration))];
+        let stride = self.along.len();
+        let mut near = self.known && iteration < CHORDS;
+        for i in 0..self.nodes {
+            // A falling characteristic is not followed: its tangent would overshoot.
+            let own = m.b[i * stride + i];
+            let slope = t.slip_slope[i].max(-steepest_fall * own);
+            near &= (slope - self.slopes[i][0]).abs() <= SAME_SLOPE * (own + slope);
+            self.diagonal[i] = slope;
+        }
+        if near {
+            return true;
+        }
+        self.known = false;
+        // Row by row the transpose: its inverse then stands column by column.
+        let rows = m.b.chunks_exact(stride).zip(m.p_transposed.chunks_exact(stride));
+        let rows = self.inverse.chunks_exact_mut(stride).zip(rows);
+        for (i, (to, (b, p))) in rows.enumerate().take(self.nodes) {
+            for (((to, b), p), c) in to.iter_mut().zip(b).zip(p).zip(&t.coupling) {
+                *to = b - c * p;
+            }
+            to[i] += self.diagonal[i];
+            self.slopes[i] = [self.diagonal[i], t.coupling[i], 0.0, m.normal_slope[i]];
+        }
+        self.known = dense::invert_rows(&mut self.inverse, self.nodes);
+        self.known
+    }
+}
+
 impl Stage {
-    /// With d = v − v_free and φ = f_n + G₀ d_n: (B + g) δ_t = f_t − B d_t − P φ, then
-    /// d_n = A⁻¹ φ − Pᵀ (d_t + δ_t) (theory eq. 3.9).
+    /// With d = v − v_free, φ = f_n + G₀ d_n and e = A⁻¹ φ − d_n − Pᵀ d_t:
+    /// (B + g − c Pᵀ) δ_t = f_t − B d_t − P φ − c e, then δ_n = e − Pᵀ δ_t, where −g and −c are the
+    /// slopes of the tangential forces by the tangential and the normal speed (theory eq. 3.9).
     #[inline(always)]
     pub(super) fn flat_direction(&mut self, m: &FlatMatrices, iteration: usize) -> bool {
-        let steepest_fall = STEEPEST_FALL[usize::from(NEAR.contains(&iteration))];
         let n = &mut self.newton;
-        let stride = self.slip.len();
+        let (stride, t) = (self.slip.len(), &self.traction);
+        if !n.renew_inverse(m, t, iteration) {
+            return false;
+        }
         for ((d, v), free) in n.difference.iter_mut().zip(&self.v).zip(&self.v_free) {
             *d = v - free;
         }
-        let (d_t, d_n) = n.difference.split_at_mut(stride);
-        let t = &self.traction;
+        let (d_t, d_n) = n.difference.split_at(stride);
         for i in 0..stride {
             n.normal[i] = t.normal[i] + m.normal_slope[i] * d_n[i];
-            // A falling characteristic is not followed: its tangent would overshoot.
-            let slope = t.slip_slope[i].max(-steepest_fall * m.b[i * stride + i]);
-            n.slopes[i] = [slope, 0.0, 0.0, m.normal_slope[i]];
-            n.diagonal[i] = slope;
         }
         self.force[..stride].copy_from_slice(&t.tangential);
         self.force[stride..].copy_from_slice(&t.normal);
@@ -76,27 +127,23 @@ impl Stage {
         n.product.fill(0.0);
         dense::add_columns(&mut n.product, &m.b, d_t);
         dense::add_columns(&mut n.product, &m.p, &n.normal);
+        // A⁻¹ r_n = A⁻¹ φ − d_n − Pᵀ d_t, the normal change if the tangential one were none.
+        direction_n.fill(0.0);
+        dense::add_columns(direction_n, &m.a_inverse, &n.normal);
+        n.along.fill(0.0);
+        dense::add_columns(&mut n.along, &m.p_transposed, d_t);
         for i in 0..stride {
-            direction_t[i] = t.tangential[i] - n.product[i];
+            direction_n[i] -= d_n[i] + n.along[i];
+            n.product[i] = t.tangential[i] - n.product[i] - n.slopes[i][1] * direction_n[i];
         }
-        let solved = dense::solve_with_diagonal(
-            &m.b,
-            &n.diagonal,
-            direction_t,
-            n.nodes,
-            stride,
-            &mut n.matrix,
-        );
-        for (d, step) in d_t.iter_mut().zip(direction_t.iter()) {
-            *d = -(*d + step);
+        direction_t.fill(0.0);
+        dense::add_columns(direction_t, &n.inverse, &n.product[..n.nodes]);
+        n.along.fill(0.0);
+        dense::add_columns(&mut n.along, &m.p_transposed, direction_t);
+        for (d, along) in direction_n.iter_mut().zip(&n.along) {
+            *d -= along;
         }
-        n.product.fill(0.0);
-        dense::add_columns(&mut n.product, &m.a_inverse, &n.normal);
-        dense::add_columns(&mut n.product, &m.p_transposed, d_t);
-        for i in 0..stride {
-            direction_n[i] = n.product[i] - d_n[i];
-        }
-        solved
+        true
     }
 
     /// (S + G) δ = f − S (v − v_free) with the full matrix of the turned block.
@@ -108,6 +155,7 @@ impl Stage {
     ) -> bool {
         let steepest_fall = STEEPEST_FALL[usize::from(NEAR.contains(&iteration))];
         let n = &mut self.newton;
+        n.forget();
         let (nodes, stride) = (n.nodes, self.slip.len());
         let size = 2 * nodes;
         let place = |c: usize| c / nodes * stride + c % nodes;

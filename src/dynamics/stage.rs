@@ -226,18 +226,23 @@ impl Stage {
         let tolerance = CHANGE_TOLERANCE * face.smoothing_speed;
         let flat = motion.sin_cos[0] == 0.0;
         let mut convergence = Convergence { iterations: 0, change: 0.0, converged: true };
-        if self.evaluate(face, matrices.a, motion, factor) <= 0.0 {
-            // Perhaps the road is out of reach altogether.
-            self.v.copy_from_slice(&self.v_free);
-            if self.evaluate(face, matrices.a, motion, factor) <= 0.0 {
-                self.force.fill(0.0);
-                return convergence;
+        let mut guess_left = true;
+        loop {
+            let highest = self.evaluate(face, matrices.a, motion, factor);
+            if highest <= 0.0 && convergence.iterations == 0 {
+                if !guess_left {
+                    // The road is out of reach altogether.
+                    self.force.fill(0.0);
+                    return convergence;
+                }
+                guess_left = false;
+                self.v.copy_from_slice(&self.v_free);
+                continue;
             }
-        }
-        for iteration in 1..=MAX_ITERATIONS {
-            convergence.iterations = iteration;
+            convergence.iterations += 1;
             // The elimination of the normal velocities converges fast where the contact is as
             // stiff as it assumes; where it does not, the full matrix serves.
+            let iteration = convergence.iterations;
             let solved = if flat && iteration <= FLAT_ITERATIONS {
                 self.flat_direction(&matrices.flat, iteration)
             } else {
@@ -251,10 +256,11 @@ impl Stage {
             if convergence.change < tolerance {
                 return convergence;
             }
-            self.evaluate(face, matrices.a, motion, factor);
+            if iteration == MAX_ITERATIONS {
+                convergence.converged = false;
+                return convergence;
+            }
         }
-        convergence.converged = false;
-        convergence
     }
 
     /// Forces and slopes at the present velocities; returns the highest pressure [Pa].

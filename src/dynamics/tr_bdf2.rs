@@ -40,12 +40,16 @@ pub struct TrBdf2 {
     /// Contact displacements and velocities relative to the clamped face, block frame.
     u: Vec<f64>,
     v: Vec<f64>,
+    /// Contact accelerations relative to the clamped face, for the first guess of a step.
+    dv: Vec<f64>,
     gap: Vec<f64>,
     trial: State,
     inertia: [[f64; 2]; 3],
     /// Free face velocity at the end of the step, block frame.
     face_velocity: [f64; 2],
     a: f64,
+    /// Coefficient, stiffness factor and angle of the matrices used last.
+    matrices_of: [f64; 3],
 }
 
 /// Results of the first stage.
@@ -78,11 +82,13 @@ impl TrBdf2 {
             },
             u: vec![0.0; contact],
             v: vec![0.0; contact],
+            dv: vec![0.0; contact],
             gap: vec![0.0; linear.stride],
             trial: State::new(linear),
             inertia: [[0.0; 2]; 3],
             face_velocity: [0.0; 2],
             a: 0.0,
+            matrices_of: [0.0; 3],
         }
     }
 
@@ -91,6 +97,8 @@ impl TrBdf2 {
     pub fn start_from(&mut self, linear: &Linear, state: &State) {
         contact_motion(linear, &state.z, &mut self.u);
         contact_motion(linear, &state.w, &mut self.v);
+        contact_motion(linear, &state.dw, &mut self.dv);
+        self.stage.newton.forget();
     }
 
     /// Steps from `from` [s] after the start of the segment by `h` [s].
@@ -108,6 +116,10 @@ impl TrBdf2 {
         from: f64,
         h: f64,
     ) -> Result<(), Fault> {
+        if self.matrices_of != [matrices.a, matrices.stiffness_factor, matrices.angle] {
+            self.matrices_of = [matrices.a, matrices.stiffness_factor, matrices.angle];
+            self.stage.newton.forget();
+        }
         self.a = matrices.a;
         let ends = [from, from + GAMMA * h, from + h].map(|s| kinematics(segment, s));
         self.inertia = [0, 1, 2].map(|k| inertia(linear, &ends[k]));
@@ -145,22 +157,27 @@ impl TrBdf2 {
         state.base_velocity = trial.base_velocity;
         state.base_acceleration = trial.base_acceleration;
         let nodes = self.gap.len();
+        let (first, second) = (2.0 * self.a, 2.0 * self.a * (1.0 - GAMMA) / GAMMA);
         for c in 0..2 * nodes {
-            self.v[c] = self.stage.v[c] - self.face_velocity[c / nodes];
+            let v = self.stage.v[c] - self.face_velocity[c / nodes];
+            // Slope at the end of the parabola through the three velocities of the step.
+            let rates =
+                [(self.middle.v[c] - self.v[c]) / first, (v - self.middle.v[c]) / second];
+            self.dv[c] = rates[1] + (1.0 - GAMMA) * (rates[1] - rates[0]);
+            self.v[c] = v;
             self.u[c] = self.stage.u[c] + self.a * self.v[c];
         }
     }
 
-    /// Trapezoidal rule from t to t + γh.
+    /// Explicit part of the trapezoidal rule from t to t + γh.
     #[inline(always)]
-    fn first_stage(
+    fn begin_first_stage(
         &mut self,
         linear: &Linear,
-        face: &Face,
         state: &State,
         matrices: &StageMatrices,
         ends: &[Kinematics; 3],
-    ) -> Result<(), Fault> {
+    ) {
         let (modes, a) = (linear.modes(), matrices.a);
         let stage = &mut self.stage;
         let inertia = self.inertia[0];
@@ -180,13 +197,24 @@ impl TrBdf2 {
         }
         let nodes = linear.stride;
         let face_velocity = free_face_velocity(linear, &ends[0], &state.base_velocity);
+        let face_acceleration = free_face_velocity(linear, &ends[0], &state.base_acceleration);
         for c in 0..2 * nodes {
             stage.u[c] = self.u[c] + a * self.v[c];
-            stage.v[c] = self.v[c] + face_velocity[c / nodes];
+            // First guess: as if the acceleration stayed.
+            let acceleration = self.dv[c] + face_acceleration[c / nodes];
+            stage.v[c] = self.v[c] + face_velocity[c / nodes] + 2.0 * a * acceleration;
         }
-        let solved =
-            stage.solve(linear, face, matrices, &ends[1], &self.gap, &state.friction_factor);
-        self.count(solved, state.time, a)?;
+    }
+
+    /// Keeps what the second stage needs of the first.
+    #[inline(always)]
+    fn end_first_stage(
+        &mut self,
+        linear: &Linear,
+        matrices: &StageMatrices,
+        ends: &[Kinematics; 3],
+    ) {
+        let (modes, nodes, a) = (linear.modes(), linear.stride, matrices.a);
         let (stage, middle) = (&self.stage, &mut self.middle);
         for m in 0..modes {
             middle.w[m] = stage.w_end[m];
@@ -210,22 +238,12 @@ impl TrBdf2 {
         if self.keep_power {
             self.powers[1] = energy::power(linear, stage, &ends[1]);
         }
-        Ok(())
     }
 
-    /// BDF2-like stage to t + h.
+    /// Explicit part of the BDF2-like stage to t + h.
     #[inline(always)]
-    fn second_stage(
-        &mut self,
-        linear: &Linear,
-        face: &Face,
-        state: &State,
-        matrices: &StageMatrices,
-        ends: &[Kinematics; 3],
-        h: f64,
-    ) -> Result<(), Fault> {
-        let (modes, nodes) = (linear.modes(), linear.stride);
-        let (weight, a) = (W * h, matrices.a);
+    fn begin_second_stage(&mut self, linear: &Linear, state: &State, h: f64) {
+        let (modes, nodes, weight) = (linear.modes(), linear.stride, W * h);
         let (stage, middle) = (&mut self.stage, &self.middle);
         let inertia_start = self.inertia[0];
         for m in 0..modes {
@@ -251,13 +269,6 @@ impl TrBdf2 {
             // First guess: the change of the first stage goes on.
             stage.v[c] += (1.0 - GAMMA) / GAMMA * (middle.v[c] - self.v[c]);
         }
-        let solved =
-            stage.solve(linear, face, matrices, &ends[2], &self.gap, &state.friction_factor);
-        self.count(solved, state.time, a)?;
-        if self.keep_power {
-            self.powers[2] = energy::power(linear, &self.stage, &ends[2]);
-        }
-        Ok(())
     }
 
     /// The state at the end of the step.
@@ -356,8 +367,22 @@ fn both_stages(
         *gap = profile + worn;
     }
     step.raise_road(linear, face, state, &ends[2], h);
-    step.first_stage(linear, face, state, matrices, ends)?;
-    step.second_stage(linear, face, state, matrices, ends, h)?;
+    // One place where a stage is solved: the solver is large, and inlined once.
+    for (k, end) in ends[1..].iter().enumerate() {
+        match k {
+            0 => step.begin_first_stage(linear, state, matrices, ends),
+            _ => step.begin_second_stage(linear, state, h),
+        }
+        let factor = &state.friction_factor;
+        let solved = step.stage.solve(linear, face, matrices, end, &step.gap, factor);
+        step.count(solved, state.time, matrices.a)?;
+        if k == 0 {
+            step.end_first_stage(linear, matrices, ends);
+        }
+    }
+    if step.keep_power {
+        step.powers[2] = energy::power(linear, &step.stage, &ends[2]);
+    }
     step.write_trial(linear, &ends[2]);
     Ok(())
 }
