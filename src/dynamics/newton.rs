@@ -17,9 +17,11 @@ const STEEPEST_FALL: [f64; 2] = [0.3, 0.95];
 const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
 
 /// Iterations before which the inverse of an earlier iteration may serve, while slopes are near.
-const CHORDS: usize = 3;
+const CHORDS: usize = 4;
 /// Change of a slope, as a share of the node's resistance, over which an inverse still serves.
-const SAME_SLOPE: f64 = 0.05;
+const SAME_SLOPE: f64 = 0.15;
+/// Ratio of a change to the one before, above which the inverse is made anew.
+const SLOW: f64 = 0.2;
 
 /// A direction and the buffers to find it.
 #[derive(Clone, Debug)]
@@ -73,10 +75,16 @@ impl Newton {
     /// Keeps K⁻¹ = (B + g − c Pᵀ)⁻¹ for the slopes as they stand, unless it holds for slopes that
     /// are near enough; `false` if K is not positive definite.
     #[inline(always)]
-    fn renew_inverse(&mut self, m: &FlatMatrices, t: &Traction, iteration: usize) -> bool {
+    fn renew_inverse(
+        &mut self,
+        m: &FlatMatrices,
+        t: &Traction,
+        iteration: usize,
+        slow: bool,
+    ) -> bool {
         let steepest_fall = STEEPEST_FALL[usize::from(NEAR.contains(&iteration))];
         let stride = self.along.len();
-        let mut near = self.known && iteration < CHORDS;
+        let mut near = self.known && iteration < CHORDS && !slow;
         for i in 0..self.nodes {
             // A falling characteristic is not followed: its tangent would overshoot.
             let own = m.b[i * stride + i];
@@ -108,10 +116,15 @@ impl Stage {
     /// (B + g − c Pᵀ) δ_t = f_t − B d_t − P φ − c e, then δ_n = e − Pᵀ δ_t, where −g and −c are the
     /// slopes of the tangential forces by the tangential and the normal speed (theory eq. 3.9).
     #[inline(always)]
-    pub(super) fn flat_direction(&mut self, m: &FlatMatrices, iteration: usize) -> bool {
+    pub(super) fn flat_direction(
+        &mut self,
+        m: &FlatMatrices,
+        iteration: usize,
+        changes: [f64; 2],
+    ) -> bool {
         let n = &mut self.newton;
         let (stride, t) = (self.slip.len(), &self.traction);
-        if !n.renew_inverse(m, t, iteration) {
+        if !n.renew_inverse(m, t, iteration, changes[1] > SLOW * changes[0]) {
             return false;
         }
         for ((d, v), free) in n.difference.iter_mut().zip(&self.v).zip(&self.v_free) {

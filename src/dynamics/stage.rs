@@ -227,6 +227,7 @@ impl Stage {
         let flat = motion.sin_cos[0] == 0.0;
         let mut convergence = Convergence { iterations: 0, change: 0.0, converged: true };
         let mut guess_left = true;
+        let mut changes = [f64::INFINITY; 2];
         loop {
             let highest = self.evaluate(face, matrices.a, motion, factor);
             if highest <= 0.0 && convergence.iterations == 0 {
@@ -244,7 +245,7 @@ impl Stage {
             // stiff as it assumes; where it does not, the full matrix serves.
             let iteration = convergence.iterations;
             let solved = if flat && iteration <= FLAT_ITERATIONS {
-                self.flat_direction(&matrices.flat, iteration)
+                self.flat_direction(&matrices.flat, iteration, changes)
             } else {
                 self.full_direction(matrices, motion, iteration)
             };
@@ -253,6 +254,7 @@ impl Stage {
                 return convergence;
             }
             convergence.change = self.take_direction(motion, tolerance);
+            changes = [changes[1], convergence.change];
             if convergence.change < tolerance {
                 return convergence;
             }
@@ -309,7 +311,7 @@ impl Stage {
 
 /// Change of the sliding speeds, as a share of the smoothing speed, at which Newton's method stops;
 /// it converges quadratically, so the error left is about the square of it.
-const CHANGE_TOLERANCE: f64 = 1e-3;
+const CHANGE_TOLERANCE: f64 = 1e-2;
 
 fn times_2x2(matrix: &[f64; 4], [x, y]: [f64; 2]) -> [f64; 2] {
     [matrix[0] * x + matrix[1] * y, matrix[2] * x + matrix[3] * y]

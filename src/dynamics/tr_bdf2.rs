@@ -161,8 +161,7 @@ impl TrBdf2 {
         for c in 0..2 * nodes {
             let v = self.stage.v[c] - self.face_velocity[c / nodes];
             // Slope at the end of the parabola through the three velocities of the step.
-            let rates =
-                [(self.middle.v[c] - self.v[c]) / first, (v - self.middle.v[c]) / second];
+            let rates = [(self.middle.v[c] - self.v[c]) / first, (v - self.middle.v[c]) / second];
             self.dv[c] = rates[1] + (1.0 - GAMMA) * (rates[1] - rates[0]);
             self.v[c] = v;
             self.u[c] = self.stage.u[c] + self.a * self.v[c];
