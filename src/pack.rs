@@ -8,7 +8,7 @@
 //! below 4e-15 relative in the ranges that the laws use (see the tests).
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, LOG2_E};
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, Deref, DerefMut, Div, Mul, Neg, Sub};
 
 /// Numbers in a pack.
 pub const LANES: usize = 8;
@@ -172,6 +172,86 @@ impl Pack {
         let z = r * r;
         let p = z * z.horner(ATAN_P) / z.horner(ATAN_Q);
         (offset + r.mul_add(p, r)).copysign(self)
+    }
+}
+
+/// Numbers that start on a cache line, so that no pack of them crosses one: reading a pack that was
+/// just written across two lines waits for the cache.
+#[derive(Debug)]
+pub struct Aligned {
+    room: Vec<f64>,
+    start: usize,
+    len: usize,
+}
+
+/// Size of a cache line [bytes].
+const LINE: usize = 64;
+
+impl Aligned {
+    /// `len` zeros.
+    pub fn zeros(len: usize) -> Self {
+        let room = vec![0.0; len + LINE / size_of::<f64>() - 1];
+        let start = room.as_ptr().addr().wrapping_neg() % LINE / size_of::<f64>();
+        Self { room, start, len }
+    }
+}
+
+impl Default for Aligned {
+    fn default() -> Self {
+        Self::zeros(0)
+    }
+}
+
+impl From<&[f64]> for Aligned {
+    fn from(from: &[f64]) -> Self {
+        let mut numbers = Self::zeros(from.len());
+        numbers.copy_from_slice(from);
+        numbers
+    }
+}
+
+impl Clone for Aligned {
+    fn clone(&self) -> Self {
+        Self::from(&**self)
+    }
+}
+
+impl PartialEq for Aligned {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
+
+impl<'a> IntoIterator for &'a Aligned {
+    type Item = &'a f64;
+    type IntoIter = std::slice::Iter<'a, f64>;
+    #[inline(always)]
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl<'a> IntoIterator for &'a mut Aligned {
+    type Item = &'a mut f64;
+    type IntoIter = std::slice::IterMut<'a, f64>;
+    #[inline(always)]
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter_mut()
+    }
+}
+
+impl Deref for Aligned {
+    type Target = [f64];
+    #[inline(always)]
+    fn deref(&self) -> &[f64] {
+        &self.room[self.start..self.start + self.len]
+    }
+}
+
+impl DerefMut for Aligned {
+    #[inline(always)]
+    fn deref_mut(&mut self) -> &mut [f64] {
+        &mut self.room[self.start..self.start + self.len]
     }
 }
 

@@ -6,6 +6,7 @@ use crate::contact::{face::padded, Traction};
 use crate::dynamics::tr_bdf2::contact_motion;
 use crate::dynamics::{Kinematics, Linear, State};
 use crate::mesh::Mesh;
+use crate::pack::Aligned;
 
 /// Quadratic interpolation from contact nodes to equidistant stations, with buffers.
 #[derive(Clone, Debug)]
@@ -13,11 +14,11 @@ pub(super) struct Stations {
     /// Per station: first of three nodes, and their weights.
     places: Vec<(usize, [f64; 3])>,
     traction: Traction,
-    u: Vec<f64>,
-    v: Vec<f64>,
-    compression: Vec<f64>,
-    slip: Vec<f64>,
-    lift: Vec<f64>,
+    u: Aligned,
+    v: Aligned,
+    compression: Aligned,
+    slip: Aligned,
+    lift: Aligned,
 }
 
 impl Stations {
@@ -36,11 +37,11 @@ impl Stations {
         Self {
             places: (0..STATIONS).map(place).collect(),
             traction: Traction::new(nodes),
-            u: vec![0.0; 2 * stride],
-            v: vec![0.0; 2 * stride],
-            compression: vec![0.0; stride],
-            slip: vec![0.0; stride],
-            lift: vec![0.0; stride],
+            u: Aligned::zeros(2 * stride),
+            v: Aligned::zeros(2 * stride),
+            compression: Aligned::zeros(stride),
+            slip: Aligned::zeros(stride),
+            lift: Aligned::zeros(stride),
         }
     }
 
@@ -55,7 +56,7 @@ impl Stations {
 impl TreadBlock {
     /// Compression of the contact nodes [m] as the state stands.
     pub(super) fn compression(&self) -> Vec<f64> {
-        self.stations.compression.clone()
+        self.stations.compression.to_vec()
     }
 
     /// Displacements [m] of all mesh nodes relative to the clamped face, block frame: x and z per

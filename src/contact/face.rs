@@ -3,7 +3,7 @@
 use super::friction::{smoothed_sign, FrictionLaw, Law};
 use super::normal;
 use crate::effects::road_texture::Texture;
-use crate::pack::{Pack, LANES};
+use crate::pack::{Aligned, Pack, LANES};
 use crate::params::Contact;
 use multiversion::multiversion;
 
@@ -14,9 +14,9 @@ const OUT_OF_REACH: f64 = 1e3;
 #[derive(Clone, Debug)]
 pub struct Face {
     /// Area of each node [m²]; 0 in the padding.
-    pub area: Vec<f64>,
+    pub area: Aligned,
     /// How far each node of the undeformed face lies behind the plane of the face [m].
-    pub profile: Vec<f64>,
+    pub profile: Aligned,
     /// Speed over which friction is smoothed [m/s]: the scale of the solver's tolerance.
     pub smoothing_speed: f64,
     /// Friction characteristic.
@@ -43,17 +43,17 @@ pub struct Face {
 #[derive(Clone, Debug, Default)]
 pub struct Traction {
     /// Tangential force [N].
-    pub tangential: Vec<f64>,
+    pub tangential: Aligned,
     /// Normal force [N].
-    pub normal: Vec<f64>,
+    pub normal: Aligned,
     /// −∂(tangential)/∂(tangential speed) [N s/m].
-    pub slip_slope: Vec<f64>,
+    pub slip_slope: Aligned,
     /// −∂(tangential)/∂(normal speed) [N s/m].
-    pub coupling: Vec<f64>,
+    pub coupling: Aligned,
     /// −∂(normal)/∂(normal speed) [N s/m].
-    pub approach_slope: Vec<f64>,
+    pub approach_slope: Aligned,
     /// Pressure [Pa].
-    pub pressure: Vec<f64>,
+    pub pressure: Aligned,
 }
 
 /// How the normal force of each node changes with its compression and approach speed, padded.
@@ -73,7 +73,7 @@ pub fn padded(nodes: usize) -> usize {
 impl Traction {
     /// Room for `nodes` contact nodes.
     pub fn new(nodes: usize) -> Self {
-        let zeros = || vec![0.0; padded(nodes)];
+        let zeros = || Aligned::zeros(padded(nodes));
         Self {
             tangential: zeros(),
             normal: zeros(),
@@ -98,7 +98,7 @@ impl Face {
         let fill = |values: &[f64], rest: f64| {
             let mut out = values.to_vec();
             out.resize(size, rest);
-            out
+            Aligned::from(&out[..])
         };
         Self {
             area: fill(area, 0.0),

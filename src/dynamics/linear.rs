@@ -2,6 +2,7 @@
 
 use crate::contact::face::padded;
 use crate::effects::viscoelastic_modulus::Branch;
+use crate::pack::Aligned;
 use crate::params::{NormalDrive, Params};
 use crate::reduction::Reduction;
 
@@ -26,7 +27,7 @@ pub struct BaseDof {
 #[derive(Clone, Debug)]
 pub struct Linear {
     /// ω² [1/s²] per mode.
-    pub omega2: Vec<f64>,
+    pub omega2: Aligned,
     /// Stiffness-proportional damping β [s].
     pub damping: f64,
     /// Number of contact nodes.
@@ -34,15 +35,15 @@ pub struct Linear {
     /// The same, padded.
     pub stride: usize,
     /// Contact displacements per mode [kg^−1/2]: mode m at `m * 2 * stride`, x of all nodes then z.
-    pub by_mode: Vec<f64>,
+    pub by_mode: Aligned,
     /// The transpose: contact displacement c (of 2 · stride) at `c * modes`.
-    pub by_contact: Vec<f64>,
+    pub by_contact: Aligned,
     /// Coupling Γ [kg^1/2] to the acceleration of the clamped face: x, z, rotation.
-    pub coupling: [Vec<f64>; 3],
+    pub coupling: [Aligned; 3],
     /// Mass of the block [kg].
     pub block_mass: f64,
     /// Positions of the contact nodes from the middle of the clamped face: x [m].
-    pub node_x: Vec<f64>,
+    pub node_x: Aligned,
     /// The same, z [m]: −h.
     pub node_z: f64,
     /// Directions in which the clamped face is free.
@@ -62,8 +63,8 @@ impl Linear {
         let scale = linear_density.sqrt();
         let (nodes, modes) = (reduction.contact_nodes(), padded(reduction.modes()));
         let stride = padded(nodes);
-        let mut by_mode = vec![0.0; modes * 2 * stride];
-        let mut by_contact = vec![0.0; modes * 2 * stride];
+        let mut by_mode = Aligned::zeros(modes * 2 * stride);
+        let mut by_contact = Aligned::zeros(modes * 2 * stride);
         for m in 0..reduction.modes() {
             for c in 0..2 * nodes {
                 let value = reduction.contact_modes[(c, m)] / scale;
@@ -74,7 +75,7 @@ impl Linear {
         }
         let fill = |mut values: Vec<f64>, size: usize, rest: f64| {
             values.resize(size, rest);
-            values
+            Aligned::from(&values[..])
         };
         let e_over_rho = rubber.young_modulus / rubber.density;
         let mut base = Vec::new();

@@ -4,6 +4,7 @@
 use super::dense;
 use super::linear::Linear;
 use crate::contact::NormalSlopes;
+use crate::pack::Aligned;
 
 /// For stage equations with coefficient a [s] (γh/2 of the step h).
 #[derive(Clone, Debug)]
@@ -15,18 +16,18 @@ pub struct StageMatrices {
     /// Angle [rad] that they hold for (matters only where the clamped face is free).
     pub angle: f64,
     /// sₘ = 1/(1 + aβω² + a²ω²κ) per mode [-].
-    pub s: Vec<f64>,
+    pub s: Aligned,
     /// a·ω²·κ per mode [1/s]; κ = stiffness factor and branches as the stage sees them.
-    pub a_omega2: Vec<f64>,
+    pub a_omega2: Aligned,
     /// S = W⁻¹ [N s/m], W = a Φ s Φᵀ + a q N⁻¹ qᵀ the Delassus matrix: contact velocities per contact
     /// force, both in the block's frame, x of all nodes then z, without padding.
-    pub inverse_delassus: Vec<f64>,
+    pub inverse_delassus: Aligned,
     /// S split for a block that is not turned.
     pub flat: FlatMatrices,
     /// Coupling Γ̃ to each free direction of the clamped face, direction after direction.
-    pub base_coupling: Vec<f64>,
+    pub base_coupling: Aligned,
     /// q = e − Φ s Γ̃ per free direction: motion of the contact nodes per velocity of the face.
-    pub q: Vec<f64>,
+    pub q: Aligned,
     /// N⁻¹ [1/kg], 2 × 2.
     pub n_inverse: [f64; 4],
 }
@@ -37,38 +38,38 @@ pub struct StageMatrices {
 pub struct FlatMatrices {
     /// Slope of the normal force by the normal velocity that the elimination assumes, per node
     /// [N s/m].
-    pub normal_slope: Vec<f64>,
+    pub normal_slope: Aligned,
     /// A⁻¹ = (S_nn + normal slope)⁻¹, symmetric.
-    pub a_inverse: Vec<f64>,
+    pub a_inverse: Aligned,
     /// P = S_tn A⁻¹.
-    pub p: Vec<f64>,
+    pub p: Aligned,
     /// Pᵀ.
-    pub p_transposed: Vec<f64>,
+    pub p_transposed: Aligned,
     /// B = S_tt − P S_nt, symmetric.
-    pub b: Vec<f64>,
+    pub b: Aligned,
 }
 
 impl StageMatrices {
     /// Room for the matrices of `linear`.
     pub fn new(linear: &Linear) -> Self {
         let (modes, stride) = (linear.modes(), linear.stride);
-        let square = || vec![0.0; stride * stride];
+        let square = || Aligned::zeros(stride * stride);
         Self {
             a: 0.0,
             stiffness_factor: 1.0,
             angle: 0.0,
-            s: vec![0.0; modes],
-            a_omega2: vec![0.0; modes],
-            inverse_delassus: vec![0.0; 4 * linear.nodes * linear.nodes],
+            s: Aligned::zeros(modes),
+            a_omega2: Aligned::zeros(modes),
+            inverse_delassus: Aligned::zeros(4 * linear.nodes * linear.nodes),
             flat: FlatMatrices {
-                normal_slope: vec![0.0; stride],
+                normal_slope: Aligned::zeros(stride),
                 a_inverse: square(),
                 p: square(),
                 p_transposed: square(),
                 b: square(),
             },
-            base_coupling: vec![0.0; 2 * modes],
-            q: vec![0.0; 4 * stride],
+            base_coupling: Aligned::zeros(2 * modes),
+            q: Aligned::zeros(4 * stride),
             n_inverse: [0.0; 4],
         }
     }

@@ -7,6 +7,7 @@ use super::linear::Linear;
 use super::matrices::{FlatMatrices, StageMatrices};
 use super::stage::Stage;
 use crate::contact::Traction;
+use crate::pack::Aligned;
 
 /// Largest fall of friction with speed that a direction follows, as a share of the block's own
 /// resistance: far from the solution the tangent of a steeper fall overshoots, near it only the
@@ -27,20 +28,20 @@ const SLOW: f64 = 0.2;
 #[derive(Clone, Debug)]
 pub(super) struct Newton {
     /// Change of the contact velocities [m/s], padded.
-    direction: Vec<f64>,
+    direction: Aligned,
     /// v − v_free [m/s], padded.
-    difference: Vec<f64>,
+    difference: Aligned,
     /// f_n + (assumed slope)·(v − v_free)_n [N].
-    normal: Vec<f64>,
-    product: Vec<f64>,
+    normal: Aligned,
+    product: Aligned,
     /// Pᵀ times a tangential velocity [m/s].
-    along: Vec<f64>,
-    diagonal: Vec<f64>,
-    matrix: Vec<f64>,
+    along: Aligned,
+    diagonal: Aligned,
+    matrix: Aligned,
     /// K⁻¹, column by column, for the slopes in `slopes`; see [`Self::renew_inverse`].
-    inverse: Vec<f64>,
+    inverse: Aligned,
     known: bool,
-    compact: Vec<f64>,
+    compact: Aligned,
     /// −∂f/∂v per node in the block's frame: xx, xz, zx, zz [N s/m].
     slopes: Vec<[f64; 4]>,
     nodes: usize,
@@ -50,16 +51,16 @@ impl Newton {
     pub(super) fn new(linear: &Linear) -> Self {
         let (nodes, stride) = (linear.nodes, linear.stride);
         Self {
-            direction: vec![0.0; 2 * stride],
-            difference: vec![0.0; 2 * stride],
-            normal: vec![0.0; stride],
-            product: vec![0.0; stride],
-            along: vec![0.0; stride],
-            diagonal: vec![0.0; stride],
-            matrix: vec![0.0; 4 * nodes * nodes],
-            inverse: vec![0.0; nodes * stride],
+            direction: Aligned::zeros(2 * stride),
+            difference: Aligned::zeros(2 * stride),
+            normal: Aligned::zeros(stride),
+            product: Aligned::zeros(stride),
+            along: Aligned::zeros(stride),
+            diagonal: Aligned::zeros(stride),
+            matrix: Aligned::zeros(4 * nodes * nodes),
+            inverse: Aligned::zeros(nodes * stride),
             known: false,
-            compact: vec![0.0; 2 * nodes],
+            compact: Aligned::zeros(2 * nodes),
             slopes: vec![[0.0; 4]; stride],
             nodes,
         }
@@ -227,7 +228,7 @@ impl Stage {
         let (direction_x, direction_z) = n.direction.split_at(stride);
         // The padding is carried along with the face, which no direction accounts for.
         let real = direction_x[..n.nodes].iter().chain(&direction_z[..n.nodes]);
-        let change = real.fold(0.0_f64, |largest, d| largest.max(d.abs()));
+        let change = real.fold(0.0, |most, d: &f64| if d.abs() > most { d.abs() } else { most });
         let near = change < tolerance;
         let (vx, vz) = self.v.split_at_mut(stride);
         let (fx, fz) = self.force.split_at_mut(stride);

@@ -7,6 +7,7 @@ use super::linear::Linear;
 use super::matrices::StageMatrices;
 use super::newton::Newton;
 use crate::contact::{Face, Traction};
+use crate::pack::Aligned;
 
 /// How the Newton iteration of a stage went.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,53 +29,53 @@ const FLAT_ITERATIONS: usize = 12;
 #[derive(Clone, Debug)]
 pub struct Stage {
     /// z* per mode.
-    pub z: Vec<f64>,
+    pub z: Aligned,
     /// w* per mode.
-    pub w: Vec<f64>,
+    pub w: Aligned,
     /// y* per branch and mode.
-    pub y: Vec<f64>,
+    pub y: Aligned,
     /// Contact displacements Φ z* [m], block frame.
-    pub u: Vec<f64>,
+    pub u: Aligned,
     /// Free coordinates of the clamped face, starred [m].
     pub base: [f64; 2],
     /// Their velocities, starred [m/s].
     pub base_velocity: [f64; 2],
     /// Solution: modal velocities.
-    pub w_end: Vec<f64>,
+    pub w_end: Aligned,
     /// Solution: velocities of the free face [m/s].
     pub base_velocity_end: [f64; 2],
     /// Solution (and first guess): contact velocities [m/s], block frame, with the free face's.
-    pub v: Vec<f64>,
+    pub v: Aligned,
     /// Solution: contact forces [N], block frame.
-    pub force: Vec<f64>,
+    pub force: Aligned,
     /// Speed over the road and away from it [m/s] at the last evaluation.
-    pub slip: Vec<f64>,
+    pub slip: Aligned,
     /// Speed away from the road [m/s] at the last evaluation.
-    pub lift: Vec<f64>,
+    pub lift: Aligned,
     /// Compression [m] at the last evaluation.
-    pub compression: Vec<f64>,
+    pub compression: Aligned,
     /// Forces and slopes at the last evaluation.
     pub traction: Traction,
     /// Newton directions and their buffers.
     pub(super) newton: Newton,
-    pub(super) v_free: Vec<f64>,
-    rhs: Vec<f64>,
-    rest_compression: Vec<f64>,
-    carried: Vec<f64>,
-    scratch: Vec<f64>,
+    pub(super) v_free: Aligned,
+    rhs: Aligned,
+    rest_compression: Aligned,
+    carried: Aligned,
+    scratch: Aligned,
 }
 
 impl Stage {
     /// Room for a stage of `linear`.
     pub fn new(linear: &Linear) -> Self {
         let (modes, stride) = (linear.modes(), linear.stride);
-        let m = || vec![0.0; modes];
-        let c = || vec![0.0; 2 * stride];
-        let n = || vec![0.0; stride];
+        let m = || Aligned::zeros(modes);
+        let c = || Aligned::zeros(2 * stride);
+        let n = || Aligned::zeros(stride);
         Self {
             z: m(),
             w: m(),
-            y: vec![0.0; modes * linear.branches.len()],
+            y: Aligned::zeros(modes * linear.branches.len()),
             u: c(),
             base: [0.0; 2],
             base_velocity: [0.0; 2],

@@ -1,6 +1,7 @@
 //! Everything that changes while the block moves.
 
 use super::linear::Linear;
+use crate::pack::Aligned;
 
 /// State of motion at one instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -8,13 +9,13 @@ pub struct State {
     /// Time [s].
     pub time: f64,
     /// Modal displacements [kg^1/2 m].
-    pub z: Vec<f64>,
+    pub z: Aligned,
     /// Modal velocities [kg^1/2 m/s].
-    pub w: Vec<f64>,
+    pub w: Aligned,
     /// Modal accelerations without the inertia of the prescribed motion [kg^1/2 m/s²].
-    pub dw: Vec<f64>,
+    pub dw: Aligned,
     /// Memory of the Maxwell branches, branch after branch [kg^1/2 m].
-    pub y: Vec<f64>,
+    pub y: Aligned,
     /// Free coordinates of the clamped face, in the order of [`Linear::base`] [m].
     pub base: [f64; 2],
     /// Their velocities [m/s].
@@ -22,11 +23,11 @@ pub struct State {
     /// Their accelerations [m/s²].
     pub base_acceleration: [f64; 2],
     /// Worn depth per contact node [m].
-    pub worn: Vec<f64>,
+    pub worn: Aligned,
     /// Factor on the stiffness of the block (amplitude-dependent softening), 1 in the base model.
     pub stiffness_factor: f64,
     /// Factor on friction per contact node, 1 in the base model.
-    pub friction_factor: Vec<f64>,
+    pub friction_factor: Aligned,
     /// Internal step that the error control would take next [s].
     pub step: f64,
     /// Scale of the motion for the error control [kg^1/2 m/s].
@@ -39,16 +40,16 @@ impl State {
         let (modes, nodes) = (linear.modes(), linear.stride);
         Self {
             time: 0.0,
-            z: vec![0.0; modes],
-            w: vec![0.0; modes],
-            dw: vec![0.0; modes],
-            y: vec![0.0; modes * linear.branches.len()],
+            z: Aligned::zeros(modes),
+            w: Aligned::zeros(modes),
+            dw: Aligned::zeros(modes),
+            y: Aligned::zeros(modes * linear.branches.len()),
             base: [0.0; 2],
             base_velocity: [0.0; 2],
             base_acceleration: [0.0; 2],
-            worn: vec![0.0; nodes],
+            worn: Aligned::zeros(nodes),
             stiffness_factor: 1.0,
-            friction_factor: vec![1.0; nodes],
+            friction_factor: Aligned::from(&vec![1.0; nodes][..]),
             step: 0.0,
             scale: 0.0,
         }

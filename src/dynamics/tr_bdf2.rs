@@ -13,6 +13,7 @@ use super::state::State;
 use crate::contact::Face;
 use crate::drive::Segment;
 use crate::error::Fault;
+use crate::pack::Aligned;
 use multiversion::multiversion;
 use std::f64::consts::SQRT_2;
 
@@ -38,11 +39,11 @@ pub struct TrBdf2 {
     pub keep_power: bool,
     middle: Middle,
     /// Contact displacements and velocities relative to the clamped face, block frame.
-    u: Vec<f64>,
-    v: Vec<f64>,
+    u: Aligned,
+    v: Aligned,
     /// Contact accelerations relative to the clamped face, for the first guess of a step.
-    dv: Vec<f64>,
-    gap: Vec<f64>,
+    dv: Aligned,
+    gap: Aligned,
     trial: State,
     inertia: [[f64; 2]; 3],
     /// Free face velocity at the end of the step, block frame.
@@ -55,10 +56,10 @@ pub struct TrBdf2 {
 /// Results of the first stage.
 #[derive(Clone, Debug)]
 struct Middle {
-    w: Vec<f64>,
-    dw: Vec<f64>,
-    dy: Vec<f64>,
-    v: Vec<f64>,
+    w: Aligned,
+    dw: Aligned,
+    dy: Aligned,
+    v: Aligned,
     base_velocity: [f64; 2],
     base_acceleration: [f64; 2],
 }
@@ -73,17 +74,17 @@ impl TrBdf2 {
             powers: [Power::default(); 3],
             keep_power: false,
             middle: Middle {
-                w: vec![0.0; modes],
-                dw: vec![0.0; modes],
-                dy: vec![0.0; modes * linear.branches.len()],
-                v: vec![0.0; contact],
+                w: Aligned::zeros(modes),
+                dw: Aligned::zeros(modes),
+                dy: Aligned::zeros(modes * linear.branches.len()),
+                v: Aligned::zeros(contact),
                 base_velocity: [0.0; 2],
                 base_acceleration: [0.0; 2],
             },
-            u: vec![0.0; contact],
-            v: vec![0.0; contact],
-            dv: vec![0.0; contact],
-            gap: vec![0.0; linear.stride],
+            u: Aligned::zeros(contact),
+            v: Aligned::zeros(contact),
+            dv: Aligned::zeros(contact),
+            gap: Aligned::zeros(linear.stride),
             trial: State::new(linear),
             inertia: [[0.0; 2]; 3],
             face_velocity: [0.0; 2],
