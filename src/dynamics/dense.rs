@@ -5,9 +5,15 @@ use crate::pack::{Pack, LANES};
 /// `out` += Σⱼ `columns`ⱼ xⱼ; `columns` holds column j at `j * out.len()`; `out` is full packs.
 #[inline(always)]
 pub fn add_columns(out: &mut [f64], columns: &[f64], x: &[f64]) {
-    let rows = out.len() / LANES;
+    add_lower_columns(out, columns, x, 0);
+}
+
+/// [`add_columns`] of the lower part of longer columns, from number `start` on.
+#[inline(always)]
+pub fn add_lower_columns(out: &mut [f64], columns: &[f64], x: &[f64], start: usize) {
+    let rows = (start + out.len()) / LANES;
     let columns = columns.as_chunks().0;
-    let (mut at, mut rest) = (0, &mut *out.as_chunks_mut().0);
+    let (mut at, mut rest) = (start / LANES, &mut *out.as_chunks_mut().0);
     while !rest.is_empty() {
         // As many rows at a time as registers hold while all columns pass.
         let count = match rest.len() {

@@ -32,28 +32,25 @@ pub struct StageMatrices {
     pub n_inverse: [f64; 4],
 }
 
-/// S = [S_tt S_tn; S_nt S_nn] with the normal velocities eliminated (theory eq. 3.9): columns of
-/// `stride` numbers.
+/// S = [S_tt S_tn; S_nt S_nn] with the normal velocities eliminated (theory eq. 3.9): what one vector
+/// is multiplied by stands in one matrix, column by column of 2 · stride numbers.
 #[derive(Clone, Debug)]
 pub struct FlatMatrices {
     /// Slope of the normal force by the normal velocity that the elimination assumes, per node
     /// [N s/m].
     pub normal_slope: Aligned,
-    /// A⁻¹ = (S_nn + normal slope)⁻¹, symmetric.
-    pub a_inverse: Aligned,
-    /// P = S_tn A⁻¹.
-    pub p: Aligned,
-    /// Pᵀ.
-    pub p_transposed: Aligned,
-    /// B = S_tt − P S_nt, symmetric.
-    pub b: Aligned,
+    /// [B; Pᵀ], B = S_tt − P S_nt symmetric, P = S_tn A⁻¹.
+    pub by_tangential: Aligned,
+    /// [P; A⁻¹], A⁻¹ = (S_nn + normal slope)⁻¹ symmetric.
+    pub by_normal: Aligned,
+    /// A⁻¹ and S_tn A⁻¹ while they are made, without padding.
+    room: [Aligned; 2],
 }
 
 impl StageMatrices {
     /// Room for the matrices of `linear`.
     pub fn new(linear: &Linear) -> Self {
         let (modes, stride) = (linear.modes(), linear.stride);
-        let square = || Aligned::zeros(stride * stride);
         Self {
             a: 0.0,
             stiffness_factor: 1.0,
@@ -63,10 +60,9 @@ impl StageMatrices {
             inverse_delassus: Aligned::zeros(4 * linear.nodes * linear.nodes),
             flat: FlatMatrices {
                 normal_slope: Aligned::zeros(stride),
-                a_inverse: square(),
-                p: square(),
-                p_transposed: square(),
-                b: square(),
+                by_tangential: Aligned::zeros(2 * stride * stride),
+                by_normal: Aligned::zeros(2 * stride * stride),
+                room: [(); 2].map(|()| Aligned::zeros(linear.nodes * linear.nodes)),
             },
             base_coupling: Aligned::zeros(2 * modes),
             q: Aligned::zeros(4 * stride),
@@ -180,37 +176,32 @@ impl FlatMatrices {
         for (slope, (k, d)) in self.normal_slope.iter_mut().zip(slopes) {
             *slope = a * k + d;
         }
-        // A in the compact corner of `b`'s room, inverted there.
-        let room = &mut self.b[..n * n];
+        let [a_inverse, p] = &mut self.room;
         for i in 0..n {
             for j in 0..n {
-                room[i * n + j] = full(n + i, n + j);
+                a_inverse[i * n + j] = full(n + i, n + j);
             }
-            room[i * n + i] += self.normal_slope[i];
+            a_inverse[i * n + i] += self.normal_slope[i];
         }
-        if !dense::invert(room, n) {
+        if !dense::invert(a_inverse, n) {
             return false;
         }
-        self.a_inverse.fill(0.0);
-        for i in 0..n {
-            self.a_inverse[i * stride..i * stride + n].copy_from_slice(&room[i * n..(i + 1) * n]);
-        }
-        for matrix in [&mut self.p, &mut self.p_transposed, &mut self.b] {
-            matrix.fill(0.0);
-        }
+        self.by_tangential.fill(0.0);
+        self.by_normal.fill(0.0);
         for i in 0..n {
             for j in 0..n {
-                let p: f64 = (0..n).map(|k| full(i, n + k) * self.a_inverse[k * stride + j]).sum();
-                // Column-major: column j holds the rows i.
-                self.p[j * stride + i] = p;
-                self.p_transposed[i * stride + j] = p;
+                let sum = (0..n).map(|k| full(i, n + k) * a_inverse[k * n + j]).sum();
+                p[i * n + j] = sum;
+                self.by_normal[j * 2 * stride + i] = sum;
+                self.by_normal[j * 2 * stride + stride + i] = a_inverse[i * n + j];
+                self.by_tangential[i * 2 * stride + stride + j] = sum;
             }
         }
         for i in 0..n {
             for j in 0..=i {
-                let sum: f64 = (0..n).map(|k| self.p[k * stride + i] * full(n + k, j)).sum();
-                self.b[i * stride + j] = full(i, j) - sum;
-                self.b[j * stride + i] = full(i, j) - sum;
+                let sum: f64 = (0..n).map(|k| p[i * n + k] * full(n + k, j)).sum();
+                self.by_tangential[i * 2 * stride + j] = full(i, j) - sum;
+                self.by_tangential[j * 2 * stride + i] = full(i, j) - sum;
             }
         }
         true

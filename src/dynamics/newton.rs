@@ -20,7 +20,7 @@ const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
 /// Iterations before which the inverse of an earlier iteration may serve, while slopes are near.
 const CHORDS: usize = 4;
 /// Change of a slope, as a share of the node's resistance, over which an inverse still serves.
-const SAME_SLOPE: f64 = 0.15;
+const SAME_SLOPE: f64 = 0.25;
 /// Ratio of a change to the one before, above which the inverse is made anew.
 const SLOW: f64 = 0.2;
 
@@ -33,9 +33,12 @@ pub(super) struct Newton {
     difference: Aligned,
     /// f_n + (assumed slope)·(v − v_free)_n [N].
     normal: Aligned,
-    product: Aligned,
-    /// Pᵀ times a tangential velocity [m/s].
-    along: Aligned,
+    /// B d_t [N] and Pᵀ d_t [m/s].
+    of_tangential: Aligned,
+    /// P φ [N] and A⁻¹ φ [m/s].
+    of_normal: Aligned,
+    /// What is left of the tangential balance [N].
+    residual: Aligned,
     diagonal: Aligned,
     matrix: Aligned,
     /// K⁻¹, column by column, for the slopes in `slopes`; see [`Self::renew_inverse`].
@@ -54,8 +57,9 @@ impl Newton {
             direction: Aligned::zeros(2 * stride),
             difference: Aligned::zeros(2 * stride),
             normal: Aligned::zeros(stride),
-            product: Aligned::zeros(stride),
-            along: Aligned::zeros(stride),
+            of_tangential: Aligned::zeros(2 * stride),
+            of_normal: Aligned::zeros(2 * stride),
+            residual: Aligned::zeros(stride),
             diagonal: Aligned::zeros(stride),
             matrix: Aligned::zeros(4 * nodes * nodes),
             inverse: Aligned::zeros(nodes * stride),
@@ -84,11 +88,11 @@ impl Newton {
         slow: bool,
     ) -> bool {
         let steepest_fall = STEEPEST_FALL[usize::from(NEAR.contains(&iteration))];
-        let stride = self.along.len();
+        let stride = self.residual.len();
         let mut near = self.known && iteration < CHORDS && !slow;
         for i in 0..self.nodes {
             // A falling characteristic is not followed: its tangent would overshoot.
-            let own = m.b[i * stride + i];
+            let own = m.by_tangential[i * 2 * stride + i];
             let slope = t.slip_slope[i].max(-steepest_fall * own);
             near &= (slope - self.slopes[i][0]).abs() <= SAME_SLOPE * (own + slope);
             self.diagonal[i] = slope;
@@ -98,9 +102,10 @@ impl Newton {
         }
         self.known = false;
         // Row by row the transpose: its inverse then stands column by column.
-        let rows = m.b.chunks_exact(stride).zip(m.p_transposed.chunks_exact(stride));
+        let rows = m.by_tangential.chunks_exact(2 * stride);
         let rows = self.inverse.chunks_exact_mut(stride).zip(rows);
-        for (i, (to, (b, p))) in rows.enumerate().take(self.nodes) {
+        for (i, (to, row)) in rows.enumerate().take(self.nodes) {
+            let (b, p) = row.split_at(stride);
             for (((to, b), p), c) in to.iter_mut().zip(b).zip(p).zip(&t.coupling) {
                 *to = b - c * p;
             }
@@ -137,25 +142,30 @@ impl Stage {
         }
         self.force[..stride].copy_from_slice(&t.tangential);
         self.force[stride..].copy_from_slice(&t.normal);
+        // B d_t and Pᵀ d_t, P φ and A⁻¹ φ.
+        for product in [&mut n.of_tangential, &mut n.of_normal] {
+            product.fill(0.0);
+        }
+        dense::add_columns(&mut n.of_tangential, &m.by_tangential, &d_t[..n.nodes]);
+        dense::add_columns(&mut n.of_normal, &m.by_normal, &n.normal[..n.nodes]);
         let (direction_t, direction_n) = n.direction.split_at_mut(stride);
-        n.product.fill(0.0);
-        dense::add_columns(&mut n.product, &m.b, d_t);
-        dense::add_columns(&mut n.product, &m.p, &n.normal);
-        // A⁻¹ r_n = A⁻¹ φ − d_n − Pᵀ d_t, the normal change if the tangential one were none.
-        direction_n.fill(0.0);
-        dense::add_columns(direction_n, &m.a_inverse, &n.normal);
-        n.along.fill(0.0);
-        dense::add_columns(&mut n.along, &m.p_transposed, d_t);
+        let (b_d, p_d) = n.of_tangential.split_at(stride);
+        let (p_phi, a_phi) = n.of_normal.split_at(stride);
         for i in 0..stride {
-            direction_n[i] -= d_n[i] + n.along[i];
-            n.product[i] = t.tangential[i] - n.product[i] - n.slopes[i][1] * direction_n[i];
+            // The normal change if the tangential one were none.
+            direction_n[i] = a_phi[i] - d_n[i] - p_d[i];
+            let pull = n.slopes[i][1] * direction_n[i];
+            n.residual[i] = t.tangential[i] - b_d[i] - p_phi[i] - pull;
         }
         direction_t.fill(0.0);
-        dense::add_columns(direction_t, &n.inverse, &n.product[..n.nodes]);
-        n.along.fill(0.0);
-        dense::add_columns(&mut n.along, &m.p_transposed, direction_t);
-        for (d, along) in direction_n.iter_mut().zip(&n.along) {
-            *d -= along;
+        dense::add_columns(direction_t, &n.inverse, &n.residual[..n.nodes]);
+        for x in direction_t.iter_mut() {
+            *x = -*x;
+        }
+        let steps = &direction_t[..n.nodes];
+        dense::add_lower_columns(direction_n, &m.by_tangential, steps, stride);
+        for x in direction_t.iter_mut() {
+            *x = -*x;
         }
         true
     }
@@ -227,8 +237,11 @@ impl Stage {
         let [sin, cos] = motion.sin_cos;
         let (direction_x, direction_z) = n.direction.split_at(stride);
         // The padding is carried along with the face, which no direction accounts for.
-        let real = direction_x[..n.nodes].iter().chain(&direction_z[..n.nodes]);
-        let change = real.fold(0.0, |most, d: &f64| if d.abs() > most { d.abs() } else { most });
+        let mut change = 0.0;
+        for i in 0..n.nodes {
+            let most = larger(direction_x[i].abs(), direction_z[i].abs());
+            change = larger(most, change);
+        }
         let near = change < tolerance;
         let (vx, vz) = self.v.split_at_mut(stride);
         let (fx, fz) = self.force.split_at_mut(stride);
@@ -246,5 +259,15 @@ impl Stage {
             vz[i] += dz;
         }
         change
+    }
+}
+
+/// The larger of two numbers, where neither is NaN.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b {
+        a
+    } else {
+        b
     }
 }
