@@ -312,7 +312,7 @@ impl Stage {
 
 /// Change of the sliding speeds, as a share of the smoothing speed, at which Newton's method stops;
 /// it converges quadratically, so the error left is about the square of it.
-const CHANGE_TOLERANCE: f64 = 1e-2;
+const CHANGE_TOLERANCE: f64 = 1e-3;
 
 fn times_2x2(matrix: &[f64; 4], [x, y]: [f64; 2]) -> [f64; 2] {
     [matrix[0] * x + matrix[1] * y, matrix[2] * x + matrix[3] * y]
