@@ -1,5 +1,6 @@
 //! Prescribed motion of the clamped face at one instant.
 
+use super::linear::Linear;
 use crate::drive::Segment;
 
 /// Prescribed motion of the clamped face at one instant, road frame.
@@ -59,4 +60,22 @@ pub fn kinematics(segment: &Segment, s: f64) -> Kinematics {
 pub fn to_block(motion: &Kinematics, [x, z]: [f64; 2]) -> [f64; 2] {
     let [sin, cos] = motion.sin_cos;
     [cos * x + sin * z, -sin * x + cos * z]
+}
+
+/// Prescribed acceleration of the clamped face in the block's frame [m/s²].
+pub(super) fn inertia(linear: &Linear, motion: &Kinematics) -> [f64; 2] {
+    to_block(motion, linear.prescribed_acceleration(motion.acceleration))
+}
+
+/// Velocity of the free clamped face in the block's frame [m/s].
+pub(super) fn free_face_velocity(
+    linear: &Linear,
+    motion: &Kinematics,
+    velocity: &[f64; 2],
+) -> [f64; 2] {
+    let mut road = [0.0; 2];
+    for (j, dof) in linear.base.iter().enumerate() {
+        road[dof.axis] = velocity[j];
+    }
+    to_block(motion, road)
 }

@@ -5,7 +5,7 @@
 
 use super::dense;
 use super::energy::{self, Power};
-use super::kinematics::{kinematics, to_block, Kinematics};
+use super::kinematics::{free_face_velocity, inertia, kinematics, Kinematics};
 use super::linear::Linear;
 use super::matrices::StageMatrices;
 use super::stage::{Convergence, Stage};
@@ -385,18 +385,4 @@ fn both_stages(
     }
     step.write_trial(linear, &ends[2]);
     Ok(())
-}
-
-/// Prescribed acceleration of the clamped face in the block's frame [m/s²].
-fn inertia(linear: &Linear, motion: &Kinematics) -> [f64; 2] {
-    to_block(motion, linear.prescribed_acceleration(motion.acceleration))
-}
-
-/// Velocity of the free clamped face in the block's frame [m/s].
-fn free_face_velocity(linear: &Linear, motion: &Kinematics, velocity: &[f64; 2]) -> [f64; 2] {
-    let mut road = [0.0; 2];
-    for (j, dof) in linear.base.iter().enumerate() {
-        road[dof.axis] = velocity[j];
-    }
-    to_block(motion, road)
 }
