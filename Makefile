@@ -1,6 +1,6 @@
 # What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
 .DEFAULT_GOAL := help
-.PHONY: help setup fmu demo test convergence release gap-check paper win64 docs clean chain
+.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs clean chain
 
 PYTHON := .venv/bin/python
 CAMPAIGNS ?= ../shared/measurements/open
@@ -29,6 +29,11 @@ chain: ## Belt source, block and acoustic stage in three masters: pictures and s
 test: ## Set up and run every test
 	@packaging/setup.sh build run test
 	@packaging/test.sh
+
+bench: ## Every speed goal as a ratio measured side by side: out/bench/summary.csv (needs the FMU)
+	@packaging/setup.sh build run test bench
+	@packaging/linux64.sh
+	@$(PYTHON) benches/bench.py
 
 convergence: ## Error over internal step and mesh: out/convergence/
 	@packaging/setup.sh build

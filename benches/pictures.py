@@ -1,0 +1,58 @@
+"""Pictures of the benches: work against precision, roofline."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt
+
+# Okabe and Ito's colours, which colour-blind readers can tell apart.
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"]
+MARKS = "osD^vP"
+plt.rcParams.update({"svg.hashsalt": "tread", "font.size": 10, "axes.grid": True, "grid.alpha": 0.3})
+
+
+def work_precision(folder: Path, points: list[dict], limit: float) -> None:
+    figure, axes = plt.subplots(figsize=(7.2, 4.6), layout="constrained")
+    for at, solver in enumerate(dict.fromkeys(p["solver"] for p in points)):
+        own = [p for p in points if p["solver"] == solver]
+        # An error of nothing is below what two runs can tell apart.
+        errors = [max(p["error_percent"], 1e-4) for p in own]
+        axes.loglog(errors, [p["seconds_per_ms"] for p in own], MARKS[at % 6] + "-",
+                    color=COLOURS[at % 6], label=solver)
+    axes.axvline(limit, color="grey", linestyle="--")
+    axes.annotate(" 0.5 %", (limit, 1), xycoords=("data", "axes fraction"), va="top")
+    axes.axhline(1e-3, color="grey", linestyle=":")
+    axes.annotate("real time", (1, 1e-3), xycoords=("axes fraction", "data"), ha="right", va="bottom")
+    axes.set_xlabel("error of stick-slip frequency or mean friction in %, the larger")
+    axes.set_ylabel("seconds per simulated ms")
+    axes.legend()
+    save(figure, folder / "work-precision.svg")
+
+
+def roofline(folder: Path, peak: float, found: dict, wall: float) -> None:
+    """Where the step stands: attained over what the core can do at its vector share and intensity."""
+    intensity, rate = found["flops"] / found["bytes"], found["flops"] / wall
+    per_instruction = found["flops"] / found["instructions"]
+    figure, axes = plt.subplots(figsize=(7.2, 4.6), layout="constrained")
+    # Two loads of a whole vector per cycle feed one fused multiply-add unit's worth of operands: the
+    # first-level cache gives 64 bytes per load port and cycle where the peak is 32 flops per cycle.
+    bandwidth = peak * 128 / 32
+    xs = [2.0 ** (k / 4) for k in range(-28, 17)]
+    axes.loglog(xs, [min(peak, bandwidth * x) / 1e9 for x in xs], color="black", label="core, first-level cache")
+    issue = peak / 32 * 4 * per_instruction
+    axes.axhline(min(issue, peak) / 1e9, color=COLOURS[1], linestyle="--",
+                 label=f"4 instructions a cycle at {per_instruction:.2f} flops each")
+    axes.loglog([intensity], [rate / 1e9], "o", color=COLOURS[0], label=f"the step: {100 * rate / peak:.0f} % of the peak")
+    axes.set_xlabel("flops per byte loaded or stored")
+    axes.set_ylabel("Gflop/s")
+    axes.legend()
+    save(figure, folder / "roofline.svg")
+
+
+def save(figure, path: Path) -> None:
+    figure.savefig(path, metadata={"Date": None})
+    plt.close(figure)
