@@ -42,6 +42,8 @@ pub enum Law {
     LogBell(LogBell),
     /// See [`Table`].
     Table(Box<Table>),
+    /// See [`TwoExponentials`].
+    TwoExponentials(TwoExponentials),
 }
 
 impl Law {
@@ -55,6 +57,11 @@ impl Law {
             (FrictionForm::LogBell, _) => {
                 Self::LogBell(LogBell { common, steepness: params.bell_steepness })
             }
+            (FrictionForm::TwoExponentials, _) => Self::TwoExponentials(TwoExponentials {
+                fast: Exponential { common, exponent: params.decay_exponent },
+                slow_share: params.slow_share,
+                slow_speed: params.slow_speed,
+            }),
             (FrictionForm::Table, Some(table)) => {
                 let mut table = table.clone();
                 table.smoothing_speed = params.smoothing_speed;
@@ -73,6 +80,7 @@ impl FrictionLaw for Law {
             Self::Rational(law) => law.mu(p, v),
             Self::LogBell(law) => law.mu(p, v),
             Self::Table(law) => law.mu(p, v),
+            Self::TwoExponentials(law) => law.mu(p, v),
         }
     }
 }
@@ -140,10 +148,39 @@ pub struct Exponential {
 impl FrictionLaw for Exponential {
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack) -> Mu {
+        let (fall, slope) = self.fall(v);
+        self.common.mu(p, v, fall, slope)
+    }
+}
+
+impl Exponential {
+    /// The falling part and |v| times its derivative by |v|.
+    #[inline(always)]
+    fn fall(&self, v: Pack) -> (Pack, Pack) {
         let ratio = v.abs() * Pack::splat(1.0 / self.common.decay_speed);
         let power = if self.exponent == 1.0 { ratio } else { power(ratio, self.exponent) };
         let fall = (-power).exp();
-        self.common.mu(p, v, fall, -(Pack::splat(self.exponent) * power * fall))
+        (fall, -(Pack::splat(self.exponent) * power * fall))
+    }
+}
+
+/// Two exponentials: fall = (1 − s) exp(−(|v|/v_d)^γ) + s exp(−|v|/v_s), a fast part that excites at
+/// small sliding speeds and a slow one that goes on while the block slips at metres per second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoExponentials {
+    fast: Exponential,
+    slow_share: f64,
+    slow_speed: f64,
+}
+
+impl FrictionLaw for TwoExponentials {
+    #[inline(always)]
+    fn mu(&self, p: Pack, v: Pack) -> Mu {
+        let (share, rest) = (Pack::splat(self.slow_share), Pack::splat(1.0 - self.slow_share));
+        let (fall, slope) = self.fast.fall(v);
+        let ratio = v.abs() * Pack::splat(1.0 / self.slow_speed);
+        let slow = share * (-ratio).exp();
+        self.fast.common.mu(p, v, rest.mul_add(fall, slow), rest * slope - ratio * slow)
     }
 }
 

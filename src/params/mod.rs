@@ -99,6 +99,8 @@ pub enum FrictionForm {
     LogBell,
     /// Table measured over p and v, see the law.
     Table,
+    /// A fast and a slow exponential fall, see the law.
+    TwoExponentials,
 }
 
 /// Friction characteristic μ(p, v).
@@ -124,6 +126,10 @@ pub struct Friction {
     pub rational_exponent: f64,
     /// Half width k of the log-bell law in decades⁻¹ [-].
     pub bell_steepness: f64,
+    /// Share of the fall that is slow in the law of two exponentials [-].
+    pub slow_share: f64,
+    /// Speed over which the slow share falls [m/s].
+    pub slow_speed: f64,
     /// File of a measured characteristic (CSV: pressure_pa, speed_m_s, mu); empty: none.
     pub table_file: String,
 }
@@ -141,6 +147,8 @@ impl Default for Friction {
             reference_pressure: 250e3,
             rational_exponent: 1.0,
             bell_steepness: 0.7,
+            slow_share: 0.5,
+            slow_speed: 3.0,
             table_file: String::new(),
         }
     }

@@ -194,7 +194,13 @@ impl Plane {
 }
 impl FrictionForm {
     /// All variants, in the order of the enumeration's values.
-    pub const ALL: [Self; 4] = [Self::Exponential, Self::Rational, Self::LogBell, Self::Table];
+    pub const ALL: [Self; 5] = [
+        Self::Exponential,
+        Self::Rational,
+        Self::LogBell,
+        Self::Table,
+        Self::TwoExponentials,
+    ];
 }
 impl ContactForm {
     /// All variants, in the order of the enumeration's values.
@@ -214,6 +220,7 @@ const FRICTION_FORMS: &[Item] = &[
     Item { name: "rational", doc: "rational fall with speed" },
     Item { name: "log_bell", doc: "bell over the logarithm of speed" },
     Item { name: "table", doc: "measured table over pressure and speed" },
+    Item { name: "two_exponentials", doc: "a fast and a slow exponential fall with speed" },
 ];
 const CONTACT_FORMS: &[Item] = &[
     Item { name: "exponential", doc: "p = p_r (exp(u/u0) - 1)" },
@@ -245,6 +252,8 @@ static BASE: &[ParamSpec] = &[
     real_param!("friction.reference_pressure", friction.reference_pressure, "Pa", KPA, 1e3, 1e8, 2.5e5, Tunable, "Pressure at which the friction coefficients hold"),
     real_param!("friction.rational_exponent", friction.rational_exponent, "1", None, 0.1, 5.0, 1.0, Tunable, "Exponent m of the rational law mu_inf + mu_drop/(1 + (|v|/decay_speed)^m)"),
     real_param!("friction.bell_steepness", friction.bell_steepness, "1", None, 0.01, 10.0, 0.7, Tunable, "Steepness k of the log-bell law exp(-(k log10(|v|/decay_speed))^2)"),
+    real_param!("friction.slow_share", friction.slow_share, "1", None, 0.0, 1.0, 0.5, Tunable, "Share of the fall that is slow in the law of two exponentials"),
+    real_param!("friction.slow_speed", friction.slow_speed, "m/s", MM_S, 1e-3, 1000.0, 3.0, Tunable, "Speed over which the slow share falls"),
     ParamSpec {
         name: "friction.table_file", kind: Kind::Text, variability: Variability::Fixed,
         doc: "CSV of a measured characteristic (pressure_pa, speed_m_s, mu) for the form table",

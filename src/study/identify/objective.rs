@@ -26,9 +26,9 @@ pub struct Fineness {
 }
 
 impl Fineness {
-    /// For the global search: frequencies within about 2 % of the converged ones.
+    /// For the global search: frequencies within about 1 % of the fine ones.
     pub const COARSE: Self =
-        Self { along: [5, 8], up: 4, max_step: 2e-5, tolerance: 3e-3, bound: 8e3, step: 4e-5 };
+        Self { along: [6, 12], up: 4, max_step: 1e-5, tolerance: 3e-3, bound: 9e3, step: 4e-5 };
     /// For the last steps and for Table 1.
     pub const FINE: Self =
         Self { along: [6, 18], up: 5, max_step: 1e-5, tolerance: 1e-3, bound: 20e3, step: 2e-5 };

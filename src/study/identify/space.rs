@@ -67,6 +67,11 @@ pub fn unknowns(form: FrictionForm) -> Vec<Unknown> {
         FrictionForm::Exponential => out.push(linear("friction.decay_exponent", 0.25, 1.5)),
         FrictionForm::Rational => out.push(linear("friction.rational_exponent", 0.25, 2.5)),
         FrictionForm::LogBell => out.push(linear("friction.bell_steepness", 0.1, 1.5)),
+        FrictionForm::TwoExponentials => out.extend([
+            linear("friction.decay_exponent", 0.25, 1.5),
+            linear("friction.slow_share", 0.0, 0.9),
+            log("friction.slow_speed", 0.5, 50.0),
+        ]),
         FrictionForm::Table => {}
     }
     out
