@@ -1,6 +1,6 @@
 # What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
 .DEFAULT_GOAL := help
-.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs clean chain
+.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs clean chain leak-check
 
 PYTHON := .venv/bin/python
 CAMPAIGNS ?= ../shared/measurements/open
@@ -34,6 +34,11 @@ bench: ## Every speed goal as a ratio measured side by side: out/bench/summary.c
 	@packaging/setup.sh build run test bench
 	@packaging/linux64.sh
 	@$(PYTHON) benches/bench.py
+
+leak-check: ## 1000 times instantiate, run, free under valgrind (half an hour)
+	@packaging/setup.sh build run test
+	@packaging/linux64.sh
+	@TREAD_LEAK_CYCLES=1000 $(PYTHON) -m pytest -q tests/python/test_c_host.py -k valgrind
 
 convergence: ## Error over internal step and mesh: out/convergence/
 	@packaging/setup.sh build

@@ -60,16 +60,21 @@ def belt_x(t):
     return -0.3 * t * t / (2 * start) if t < start else -0.3 * (t - start / 2)
 
 
+# A power of two: masters that add up their steps and masters that multiply arrive at the same bits.
+DYADIC = 2.0 ** -17  # [s]
+
+
 def grid(n, h):
     """Communication points as a master counts them that multiplies."""
     return [k * h for k in range(n + 1)]
 
 
 def library(points, load=LOAD, **parameters):
-    """Rows (outputs after each step) of the library on a sliding block."""
+    """Rows (outputs after each step) of the library on a sliding block; `load` may follow the points."""
     parameters = {**COARSE, **parameters}
+    loads = load if isinstance(load, list) else [load] * len(points)
     lines = ["time,belt.x,belt.z,belt.angle,normal_load"]
-    lines += [f"{t!r},{belt_x(t)!r},0.0,0.0,{load!r}" for t in points]
+    lines += [f"{t!r},{belt_x(t)!r},0.0,0.0,{newtons!r}" for t, newtons in zip(points, loads)]
     arguments = [f"{name}={value}" for name, value in parameters.items()]
     done = subprocess.run([follower(), *arguments], input="\n".join(lines), text=True,
                           capture_output=True, check=True)

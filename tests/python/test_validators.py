@@ -7,6 +7,7 @@ from pathlib import Path
 
 import fmpy
 import lxml.etree as etree
+import pytest
 from fmpy.validation import validate_fmu
 
 
@@ -18,6 +19,15 @@ def test_the_description_obeys_the_schema(fmu):
     schema = Path(fmpy.__file__).parent / "schema" / "fmi2" / "fmi2ModelDescription.xsd"
     description = etree.fromstring(zipfile.ZipFile(fmu).read("modelDescription.xml"))
     etree.XMLSchema(etree.parse(str(schema))).assertValid(description)
+
+
+def test_fmureader_understands_every_variable(fmu, description):
+    """A reader on pydantic models: strict about kinds and enumerations, shares no code with fmpy."""
+    fmi2 = pytest.importorskip("fmureader.fmi2")
+    read = fmi2.read_model_description(str(fmu))
+    assert read.guid == description.guid
+    names = [variable.name for variable in read.model_variables]
+    assert names == [variable.name for variable in description.modelVariables]
 
 
 def test_fmutool_finds_no_problem(fmu):

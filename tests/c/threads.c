@@ -1,0 +1,127 @@
+/* Two threads, each with an instance of its own, and one library: no race, the same bits in both. Built
+ * with gcc -Wall -Wextra -Werror, run plain and under helgrind.
+ *
+ *   threads LIBRARY GUID VR_INPUT_X VR_LOAD VR_ALONG VR_UP VR_FORCE */
+#include <dlfcn.h>
+#include <pthread.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { STEPS = 40, CYCLES = 3 };
+
+typedef void *Component;
+typedef struct {
+    void (*logger)(void *, const char *, int, const char *, const char *, ...);
+    void *(*allocate)(size_t, size_t);
+    void (*release)(void *);
+    void (*finished)(void *, int);
+    void *environment;
+} Callbacks;
+
+typedef struct {
+    const char *guid;
+    unsigned x, load, mesh[2], force;
+    Component (*instantiate)(const char *, int, const char *, const char *, const Callbacks *, int, int);
+    void (*free_instance)(Component);
+    int (*setup)(Component, int, double, double, int, double);
+    int (*enter)(Component);
+    int (*leave)(Component);
+    int (*set_real)(Component, const unsigned *, size_t, const double *);
+    int (*get_real)(Component, const unsigned *, size_t, double *);
+    int (*set_integer)(Component, const unsigned *, size_t, const int *);
+    int (*step)(Component, double, double, int);
+    int (*get_state)(Component, void **);
+    int (*set_state)(Component, void *);
+    int (*free_state)(Component, void **);
+} Fmu;
+
+typedef struct {
+    const Fmu *fmu;
+    double force[CYCLES][STEPS];
+    int failed;
+} Job;
+
+static void logger(void *environment, const char *name, int status, const char *category,
+                   const char *format, ...) {
+    va_list arguments;
+    (void)environment;
+    va_start(arguments, format);
+    fprintf(stderr, "%s %d %s: ", name, status, category);
+    vfprintf(stderr, format, arguments);
+    va_end(arguments);
+}
+
+#define OK(call) if ((call) != 0) { job->failed = __LINE__; return NULL; }
+
+static void *run(void *argument) {
+    Job *job = argument;
+    const Fmu *f = job->fmu;
+    Callbacks callbacks = {logger, calloc, free, NULL, NULL};
+    for (int cycle = 0; cycle < CYCLES; cycle++) {
+        Component block = f->instantiate("block", 1, f->guid, NULL, &callbacks, 0, 0);
+        int elements[2] = {2, 2};
+        double newtons = 56.25, h = 1e-5;
+        void *state = NULL;
+        if (!block) { job->failed = __LINE__; return NULL; }
+        OK(f->set_integer(block, f->mesh, 2, elements));
+        OK(f->set_real(block, &f->load, 1, &newtons));
+        OK(f->setup(block, 0, 0, 0, 0, 0));
+        OK(f->enter(block));
+        OK(f->leave(block));
+        for (int k = 0; k < STEPS; k++) {
+            double position = -0.1 * k * h;
+            OK(f->set_real(block, &f->x, 1, &position));
+            OK(f->step(block, k * h, h, 0));
+            OK(f->get_real(block, &f->force, 1, &job->force[cycle][k]));
+        }
+        OK(f->get_state(block, &state));
+        OK(f->set_state(block, state));
+        OK(f->free_state(block, &state));
+        /* A refusal logs from both threads at once. */
+        if (f->step(block, -1, h, 0) == 0) { job->failed = __LINE__; return NULL; }
+        f->free_instance(block);
+    }
+    return NULL;
+}
+
+#define LOAD(member, name) *(void **)&fmu.member = dlsym(library, name); if (!fmu.member) return 10
+
+int main(int argc, char **argv) {
+    static Job jobs[2];
+    pthread_t threads[2];
+    Fmu fmu;
+    if (argc < 8) return 2;
+    void *library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
+    if (!library) { fprintf(stderr, "%s\n", dlerror()); return 9; }
+    LOAD(instantiate, "fmi2Instantiate");
+    LOAD(free_instance, "fmi2FreeInstance");
+    LOAD(setup, "fmi2SetupExperiment");
+    LOAD(enter, "fmi2EnterInitializationMode");
+    LOAD(leave, "fmi2ExitInitializationMode");
+    LOAD(set_real, "fmi2SetReal");
+    LOAD(get_real, "fmi2GetReal");
+    LOAD(set_integer, "fmi2SetInteger");
+    LOAD(step, "fmi2DoStep");
+    LOAD(get_state, "fmi2GetFMUstate");
+    LOAD(set_state, "fmi2SetFMUstate");
+    LOAD(free_state, "fmi2FreeFMUstate");
+    fmu.guid = argv[2];
+    fmu.x = (unsigned)atoi(argv[3]);
+    fmu.load = (unsigned)atoi(argv[4]);
+    fmu.mesh[0] = (unsigned)atoi(argv[5]);
+    fmu.mesh[1] = (unsigned)atoi(argv[6]);
+    fmu.force = (unsigned)atoi(argv[7]);
+    for (int i = 0; i < 2; i++) {
+        jobs[i].fmu = &fmu;
+        if (pthread_create(&threads[i], NULL, run, &jobs[i])) return 3;
+    }
+    for (int i = 0; i < 2; i++) pthread_join(threads[i], NULL);
+    for (int i = 0; i < 2; i++) {
+        if (jobs[i].failed) { fprintf(stderr, "failed in line %d\n", jobs[i].failed); return 11; }
+    }
+    if (memcmp(jobs[0].force, jobs[1].force, sizeof jobs[0].force)) return 12;
+    if (jobs[0].force[0][STEPS - 1] == 0) return 13;
+    return 0;
+}
