@@ -31,11 +31,18 @@ say "compiler: $("$rustc" --version)"
 # bindgen looks up the compiler's own headers only when it builds for the host.
 BINDGEN_EXTRA_CLANG_ARGS_x86_64_win7_windows_gnu="-I$(x86_64-w64-mingw32-gcc -print-file-name=include)" \
 CC_x86_64_win7_windows_gnu=x86_64-w64-mingw32-gcc AR_x86_64_win7_windows_gnu=x86_64-w64-mingw32-ar \
+CARGO_TARGET_X86_64_WIN7_WINDOWS_GNU_LINKER=$PWD/packaging/mingwld.sh \
 RUSTC=$rustc RUSTC_BOOTSTRAP=1 CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEASE_STRIP=symbols \
     cargo build --quiet --release --lib --no-default-features -Zbuild-std=std,panic_unwind \
     --target "$target" --target-dir "$target_dir"
 mkdir -p out/binaries/win64
 cp "$target_dir/$target/release/tread_block.dll" out/binaries/win64/TreadBlock.dll
+
+exports=$(x86_64-w64-mingw32-objdump -p out/binaries/win64/TreadBlock.dll |
+    sed -n '/Ordinal\/Name Pointer/,/^$/p' | grep -oE '[A-Za-z_][A-Za-z0-9_]*$' | grep -v Table || true)
+strangers=$(echo "$exports" | grep -v '^fmi2' || true)
+[ -z "$strangers" ] || { say "the DLL exports more than the interface:" $strangers; exit 1; }
+[ "$(echo "$exports" | grep -c '^fmi2')" = 44 ] || { say "the DLL does not export 44 functions"; exit 1; }
 
 [ -f out/binaries/linux64/TreadBlock.so ] || packaging/linux64.sh
 x86_64-w64-mingw32-gcc -O1 -D__USE_MINGW_ANSI_STDIO=1 -o out/host.exe tests/c/host.c
