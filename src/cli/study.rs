@@ -7,6 +7,7 @@ use crate::error::Fault;
 use crate::params::{load, Params};
 use crate::study;
 use crate::study::identify::objective::Fineness;
+use crate::study::measured::Measurements;
 use crate::study::report::{html, Study};
 
 const EXAMPLES: &str = "\
@@ -27,6 +28,12 @@ pub struct Arguments {
     /// Parameter file; the compound identified from the paper if not given
     #[arg(long)]
     compound: Option<PathBuf>,
+    /// Measured friction beside fig-2: CSV with the columns pressure_pa, speed_m_s, mu
+    #[arg(long, value_name = "CSV")]
+    friction: Option<PathBuf>,
+    /// Measured wear beside fig-3: CSV with the columns pressure_pa, speed_m_s, rate_kg_m3
+    #[arg(long, value_name = "CSV")]
+    wear: Option<PathBuf>,
     /// Solve coarsely: faster, frequencies within about 2 %
     #[arg(long)]
     coarse: bool,
@@ -39,11 +46,12 @@ pub struct Arguments {
 pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
     let params = compound(arguments.compound.as_deref())?;
     let fineness = if arguments.coarse { Fineness::COARSE } else { Fineness::FINE };
+    let measured = Measurements::new(arguments.friction.as_deref(), arguments.wear.as_deref())?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.unwrap_or(0))
         .build()
         .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
-    let studies = pool.install(|| study::run(&arguments.study, &params, &fineness))?;
+    let studies = pool.install(|| study::run(&arguments.study, &params, &fineness, &measured))?;
     for study in &studies {
         write(study, &arguments.out)?;
     }

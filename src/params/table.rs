@@ -194,13 +194,8 @@ impl Plane {
 }
 impl FrictionForm {
     /// All variants, in the order of the enumeration's values.
-    pub const ALL: [Self; 5] = [
-        Self::Exponential,
-        Self::Rational,
-        Self::LogBell,
-        Self::Table,
-        Self::TwoExponentials,
-    ];
+    pub const ALL: [Self; 5] =
+        [Self::Exponential, Self::Rational, Self::LogBell, Self::Table, Self::TwoExponentials];
 }
 impl ContactForm {
     /// All variants, in the order of the enumeration's values.

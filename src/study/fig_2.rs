@@ -1,6 +1,7 @@
 //! Figure 2: friction characteristic, and contact stiffness as force over approach.
 
 use super::identify::objective::Fineness;
+use super::measured::Grid;
 use super::plot::{svg, Panel, Series};
 use super::report::{csv, Study, Verdict};
 use super::slides::Reductions;
@@ -10,9 +11,6 @@ use crate::drive::Pose;
 use crate::error::Fault;
 use crate::params::{NormalDrive, Params};
 
-/// Example of a measured characteristic: made up from a falling characteristic with 3 % scatter, only to
-/// show the format; put your own grid in its place.
-const EXAMPLE: &str = include_str!("../../examples/friction-grid.csv");
 /// Pressures of the paper's studies [Pa].
 const PRESSURES: [f64; 4] = [100e3, 250e3, 400e3, 600e3];
 
@@ -20,20 +18,19 @@ const PRESSURES: [f64; 4] = [100e3, 250e3, 400e3, 600e3];
 ///
 /// # Errors
 /// What stops the block.
-pub fn fig_2(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
+pub fn fig_2(compound: &Params, fineness: &Fineness, measured: &Grid) -> Result<Study, Fault> {
     let law = Law::new(&compound.friction, None);
     let speeds: Vec<f64> = (0..80).map(|i| 1e-3 * 3000.0_f64.powf(f64::from(i) / 79.0)).collect();
     let mu = |p: f64, v: f64| law.at(p, v)[0];
-    let measured = measured();
     let mut series = Vec::new();
     for (color, p) in PRESSURES.iter().enumerate() {
         let line = speeds.iter().map(|v| (1e3 * v, mu(*p, *v))).collect();
         series.push(Series::line(format!("{:.2} N/mm2", 1e-6 * p), color, line));
-        let dots = measured.iter().filter(|m| m[0] == *p).map(|m| (1e3 * m[1], m[2]));
+        let dots = measured.points.iter().filter(|m| m[0] == *p).map(|m| (1e3 * m[1], m[2]));
         series.push(Series::dots("", color, dots.collect()));
     }
     let axes = ["sliding speed [mm/s]", "friction coefficient"];
-    let mut friction = Panel::new("friction characteristic, dots: example data", axes, series);
+    let mut friction = Panel::new("friction characteristic, dots: measured", axes, series);
     friction.log_x = true;
     let curve = approach(compound, fineness)?;
     let rows = PRESSURES
@@ -44,10 +41,7 @@ pub fn fig_2(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     Ok(Study {
         name: "fig-2",
         title: "Friction characteristic and contact stiffness",
-        notes:
-            "Lines: the identified laws. Dots: an example of measured data, made up to show the \
-                format (examples/friction-grid.csv); the paper's own are not published."
-                .to_string(),
+        notes: format!("Lines: the identified laws. Dots, measured: {}.", measured.origin),
         tables: vec![
             ("fig-2-friction.csv".to_string(), csv("pressure_pa,speed_m_s,mu", rows)),
             (
@@ -69,13 +63,6 @@ pub fn fig_2(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
             ),
         ],
     })
-}
-
-fn measured() -> Vec<[f64; 3]> {
-    let numbers = |line: &str| -> Vec<f64> {
-        line.split(',').filter_map(|cell| cell.trim().parse().ok()).collect()
-    };
-    EXAMPLE.lines().filter_map(|line| numbers(line).try_into().ok()).collect()
 }
 
 /// Mean pressure over approach of a pressed block at rest: approach [m], pressure [Pa].

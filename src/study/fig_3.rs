@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::cycle_jump::{Wearing, Worn};
 use super::identify::objective::Fineness;
+use super::measured::Grid;
 use super::paper::PRESSURE;
 use super::plot::{svg, Panel, Series};
 use super::report::{csv, Study, Verdict};
@@ -21,15 +22,17 @@ const TOLERANCE: f64 = 4e-6;
 const HASTE: f64 = 40.0;
 /// Distance of the brute force [m]; with [`HASTE`] worth 40 times as much.
 const CHECKED: f64 = 0.06;
-/// Example of a measured wear rate: made up around the published range, only to show the format.
-const EXAMPLE: &str = include_str!("../../examples/wear-rate.csv");
 
 /// Figure 3.
 ///
 /// # Errors
 /// What stops the block.
-pub fn fig_3(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
-    let points = measured();
+pub fn fig_3(compound: &Params, fineness: &Fineness, measured: &Grid) -> Result<Study, Fault> {
+    let points: Vec<Measured> = measured
+        .points
+        .iter()
+        .map(|[pressure, speed, rate]| Measured { pressure: *pressure, speed: *speed, rate: *rate })
+        .collect();
     let [k1, k2, k3] = fit(&points).unwrap_or([1.0, 1.0, 0.0]);
     let mut params = compound.clone();
     (params.block.height, params.block.length) = (0.010, 0.015);
@@ -63,10 +66,11 @@ pub fn fig_3(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         title: "Wear rate, and the block after 25 m by five laws",
         notes: format!(
             "All laws wear alike at 0.25 N/mm2 and 300 mm/s ({:.2} mm3/(N m)), so that only their \
-             shapes compare. Generalised law by least squares of the example data: k1 = {k1:.3} kg/m3, \
+             shapes compare. Generalised law by least squares of the measured data ({}): k1 = {k1:.3} kg/m3, \
              k2 = {k2:.2}, k3 = {k3:.2}. Cycle-jump: {} jumps for Fleischer's law, estimated error \
              {:.1} um.",
             1e9 * SPECIFIC_WEAR,
+            measured.origin,
             worn[1].jumps,
             1e6 * worn[1].error
         ),
@@ -77,19 +81,6 @@ pub fn fig_3(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         )],
         verdicts: verdicts(&worn, difference, deepest),
     })
-}
-
-fn measured() -> Vec<Measured> {
-    EXAMPLE
-        .lines()
-        .filter_map(|line| {
-            let n: Vec<f64> = line.split(',').filter_map(|c| c.trim().parse().ok()).collect();
-            match n[..] {
-                [pressure, speed, rate] => Some(Measured { pressure, speed, rate }),
-                _ => None,
-            }
-        })
-        .collect()
 }
 
 fn verdicts(worn: &[Worn], difference: f64, deepest: f64) -> Vec<Verdict> {

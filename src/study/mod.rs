@@ -5,6 +5,7 @@ pub mod fig_2;
 pub mod fig_3;
 pub mod fig_4;
 pub mod identify;
+pub mod measured;
 pub mod paper;
 pub mod plot;
 pub mod report;
@@ -18,28 +19,40 @@ pub mod wear_laws;
 use crate::error::{Fault, Problem};
 use crate::params::Params;
 use identify::objective::Fineness;
+use measured::{Grid, Measurements};
 use report::Study;
 
-type Runner = fn(&Params, &Fineness) -> Result<Study, Fault>;
+/// How a study is run: from the model alone, or beside a measured grid.
+#[derive(Clone, Copy)]
+enum Runner {
+    Model(fn(&Params, &Fineness) -> Result<Study, Fault>),
+    Friction(fn(&Params, &Fineness, &Grid) -> Result<Study, Fault>),
+    Wear(fn(&Params, &Fineness, &Grid) -> Result<Study, Fault>),
+}
 
 /// The studies in the order of the paper.
 const STUDIES: &[(&str, Runner)] = &[
-    ("fig-2", fig_2::fig_2),
-    ("fig-3", fig_3::fig_3),
-    ("fig-4", fig_4::fig_4),
-    ("fig-5", vibration::fig_5),
-    ("fig-6", vibration::fig_6),
-    ("fig-7", vibration::fig_7),
-    ("table-1", table_one::table_1),
-    ("fig-8", rolling::fig_8),
-    ("fig-9", rolling::fig_9),
+    ("fig-2", Runner::Friction(fig_2::fig_2)),
+    ("fig-3", Runner::Wear(fig_3::fig_3)),
+    ("fig-4", Runner::Model(fig_4::fig_4)),
+    ("fig-5", Runner::Model(vibration::fig_5)),
+    ("fig-6", Runner::Model(vibration::fig_6)),
+    ("fig-7", Runner::Model(vibration::fig_7)),
+    ("table-1", Runner::Model(table_one::table_1)),
+    ("fig-8", Runner::Model(rolling::fig_8)),
+    ("fig-9", Runner::Model(rolling::fig_9)),
 ];
 
 /// Runs the study of that name, or `all`.
 ///
 /// # Errors
 /// What stops a block; an unknown name.
-pub fn run(name: &str, compound: &Params, fineness: &Fineness) -> Result<Vec<Study>, Fault> {
+pub fn run(
+    name: &str,
+    compound: &Params,
+    fineness: &Fineness,
+    measured: &Measurements,
+) -> Result<Vec<Study>, Fault> {
     let wanted: Vec<_> =
         STUDIES.iter().filter(|(study, _)| name == "all" || *study == name).collect();
     if wanted.is_empty() {
@@ -51,5 +64,10 @@ pub fn run(name: &str, compound: &Params, fineness: &Fineness) -> Result<Vec<Stu
             "name one of them",
         )));
     }
-    wanted.into_iter().map(|(_, study)| study(compound, fineness)).collect()
+    let one = |runner: Runner| match runner {
+        Runner::Model(study) => study(compound, fineness),
+        Runner::Friction(study) => study(compound, fineness, &measured.friction),
+        Runner::Wear(study) => study(compound, fineness, &measured.wear),
+    };
+    wanted.into_iter().map(|(_, runner)| one(*runner)).collect()
 }
