@@ -1,6 +1,9 @@
 //! `tread study`: the paper's studies on our own model.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressStyle};
 
 use super::output::{self, Done, Stop};
 use crate::error::Fault;
@@ -51,7 +54,15 @@ pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
         .num_threads(arguments.threads.unwrap_or(0))
         .build()
         .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
-    let studies = pool.install(|| study::run(&arguments.study, &params, &fineness, &measured))?;
+    let bar = progress();
+    let studies = pool.install(|| {
+        study::run(&arguments.study, &params, &fineness, &measured, |name, done, count| {
+            bar.set_length(count as u64);
+            bar.set_position(done as u64);
+            bar.set_message(name.to_string());
+        })
+    })?;
+    bar.finish_and_clear();
     for study in &studies {
         write(study, &arguments.out)?;
     }
@@ -61,6 +72,16 @@ pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
         eprintln!("{}", arguments.out.join("index.html").display());
     }
     Ok(Done::Fine)
+}
+
+/// A bar over the studies on terminals, with the one that runs and the time so far.
+fn progress() -> ProgressBar {
+    let bar = ProgressBar::new(1);
+    if let Ok(style) = ProgressStyle::with_template("{msg:8} {bar:24} {pos}/{len} {elapsed}") {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(250));
+    bar
 }
 
 /// Writes tables and pictures, tells notes and verdicts.

@@ -43,7 +43,7 @@ const STUDIES: &[(&str, Runner)] = &[
     ("fig-9", Runner::Model(rolling::fig_9)),
 ];
 
-/// Runs the study of that name, or `all`.
+/// Runs the study of that name, or `all`; `told(name, done, of)` hears of each before it starts.
 ///
 /// # Errors
 /// What stops a block; an unknown name.
@@ -52,6 +52,7 @@ pub fn run(
     compound: &Params,
     fineness: &Fineness,
     measured: &Measurements,
+    mut told: impl FnMut(&str, usize, usize),
 ) -> Result<Vec<Study>, Fault> {
     let wanted: Vec<_> =
         STUDIES.iter().filter(|(study, _)| name == "all" || *study == name).collect();
@@ -69,5 +70,11 @@ pub fn run(
         Runner::Friction(study) => study(compound, fineness, &measured.friction),
         Runner::Wear(study) => study(compound, fineness, &measured.wear),
     };
-    wanted.into_iter().map(|(_, runner)| one(*runner)).collect()
+    let count = wanted.len();
+    let mut studies = Vec::new();
+    for (at, (name, runner)) in wanted.into_iter().enumerate() {
+        told(name, at, count);
+        studies.push(one(*runner)?);
+    }
+    Ok(studies)
 }
