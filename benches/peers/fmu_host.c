@@ -57,7 +57,7 @@ int main(int argc, char **argv) {
         OK(fmi2EnterInitializationMode(block));
         OK(fmi2ExitInitializationMode(block));
         struct timespec a, b;
-        clock_gettime(CLOCK_MONOTONIC, &a);
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &a);
         for (int k = 0; k < steps; k++) {
             double t = k * h, ramp = 0.5e-3;
             belt = t < ramp ? -0.3 * t * t / (2 * ramp) : -0.3 * (t - ramp / 2);
@@ -66,7 +66,7 @@ int main(int argc, char **argv) {
             OK(fmi2GetReal(block, &out, 1, &seen));
             sum += seen;
         }
-        clock_gettime(CLOCK_MONOTONIC, &b);
+        clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &b);
         printf("%g\n", (double)(b.tv_sec - a.tv_sec) + 1e-9 * (double)(b.tv_nsec - a.tv_nsec));
         OK(fmi2Reset(block));
     }
