@@ -50,11 +50,11 @@ pub enum Fault {
          {iterations} iterations): lower solver.max_step or check the inputs for jumps"
     )]
     NoConvergence {
-        /// Time [s] up to which the solution is good.
+        /// Time \[s\] up to which the solution is good.
         time: f64,
-        /// Step size [s] that failed.
+        /// Step size \[s\] that failed.
         step: f64,
-        /// Remaining residual of the sliding velocities [m/s].
+        /// Remaining residual of the sliding velocities \[m/s\].
         residual: f64,
         /// Iterations done.
         iterations: usize,
@@ -64,7 +64,7 @@ pub enum Fault {
     NotFinite {
         /// First quantity found to be not finite.
         what: String,
-        /// Time [s].
+        /// Time \[s\].
         time: f64,
     },
     /// A file could not be read or written.

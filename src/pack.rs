@@ -184,7 +184,7 @@ pub struct Aligned {
     len: usize,
 }
 
-/// Size of a cache line [bytes].
+/// Size of a cache line \[bytes\].
 const LINE: usize = 64;
 
 impl Aligned {

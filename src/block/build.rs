@@ -13,25 +13,25 @@ use crate::reduction::Reduction;
 /// root of their length, since the edges need the resolution. Measured against the independent
 /// solutions: see the convergence table in the book.
 const ELEMENTS_ALONG: f64 = 10.0;
-/// Length that [`ELEMENTS_ALONG`] holds for [m].
+/// Length that [`ELEMENTS_ALONG`] holds for \[m\].
 const REFERENCE_LENGTH: f64 = 15e-3;
-/// Height of an element [m], unless given.
+/// Height of an element \[m\], unless given.
 const ELEMENT_HEIGHT: f64 = 1.5e-3;
 
 /// What the reduction depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
-    /// Length of the block [m].
+    /// Length of the block \[m\].
     pub length: f64,
-    /// Height of the block [m].
+    /// Height of the block \[m\].
     pub height: f64,
     /// Elements along the face and up.
     pub elements: (usize, usize),
-    /// Poisson's ratio [-].
+    /// Poisson's ratio \[-\].
     pub poisson_ratio: f64,
     /// Plane stress or strain.
     pub plane: Plane,
-    /// Fixed-interface modes up to this ω²ρ/E [1/m²].
+    /// Fixed-interface modes up to this ω²ρ/E \[1/m²\].
     pub bound: f64,
 }
 
@@ -99,7 +99,7 @@ pub(super) fn face(reduction: &Reduction, params: &Params) -> Result<Face, Fault
     })
 }
 
-/// How far each contact node lies behind the plane of the road when the face just touches [m].
+/// How far each contact node lies behind the plane of the road when the face just touches \[m\].
 fn profile(reduction: &Reduction, params: &Params) -> Vec<f64> {
     let x = &reduction.mesh.x;
     let (tilt, edge) = (&params.effect.misalignment, &params.effect.worn_edge);

@@ -9,13 +9,13 @@ use crate::params::Params;
 /// Memory of the effects that have one; part of the block's state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Memory {
-    /// Flash temperature rise per contact node [K].
+    /// Flash temperature rise per contact node \[K\].
     rise: Vec<f64>,
     /// Age per contact node, see [`crate::effects::friction_ageing`].
     age: Vec<f64>,
-    /// Amplitude of strain [-].
+    /// Amplitude of strain \[-\].
     amplitude: f64,
-    /// Shear modulus times volume of the block [J].
+    /// Shear modulus times volume of the block \[J\].
     shear_energy: f64,
     /// Force channels: contact x and z, belt x and z.
     channels: [Channel; 4],
@@ -44,14 +44,14 @@ impl Memory {
         self.rest(effects, effects.friction_ageing.initial_age, state);
     }
 
-    /// Lets the block rest for `duration` [s].
+    /// Lets the block rest for `duration` \[s\].
     pub fn rest(&mut self, effects: &Effects, duration: f64, state: &mut State) {
         effects.thermal_friction.rest(duration, &mut self.rise);
         effects.friction_ageing.rest(duration, &mut self.age);
         self.set_friction(effects, state);
     }
 
-    /// Follows an internal step of `h` [s] and sets what acts on the next one.
+    /// Follows an internal step of `h` \[s\] and sets what acts on the next one.
     pub fn after_step(
         &mut self,
         effects: &Effects,
@@ -88,7 +88,7 @@ impl Memory {
         self.channels.iter_mut().zip(inputs).for_each(|(c, force)| c.settle(*force));
     }
 
-    /// Follows the force on the belt over a communication step of `h` [s].
+    /// Follows the force on the belt over a communication step of `h` \[s\].
     pub fn follow_belt(&mut self, effects: &Effects, h: f64, outputs: &Outputs) {
         if effects.sensor_dynamics.is_active() {
             for (channel, force) in self.channels[2..].iter_mut().zip(outputs.force) {

@@ -33,7 +33,7 @@ pub struct TreadBlock {
     stations: Stations,
     memory: Memory,
     wear_mass: f64,
-    /// Energy of the contact springs that wear has released since the ledger was opened [J].
+    /// Energy of the contact springs that wear has released since the ledger was opened \[J\].
     wear_energy: f64,
     /// Prescribed motion at the time reached.
     motion: Kinematics,
@@ -79,7 +79,7 @@ impl TreadBlock {
         Ok(block)
     }
 
-    /// Puts the block at rest at `time` [s]: in `load` drive in frictionless static equilibrium under
+    /// Puts the block at rest at `time` \[s\]: in `load` drive in frictionless static equilibrium under
     /// `pose.load` (then `pose.z` is ignored), in `trajectory` drive undeformed, or in static
     /// equilibrium where `pose.z` already presses it.
     ///
@@ -98,7 +98,7 @@ impl TreadBlock {
         Ok(())
     }
 
-    /// Moves the block over `h` [s] with the inputs of `segment`; allocates nothing.
+    /// Moves the block over `h` \[s\] with the inputs of `segment`; allocates nothing.
     ///
     /// # Errors
     /// [`Fault::NoConvergence`], [`Fault::NotFinite`]; the block then stands at the last time that was
@@ -130,7 +130,7 @@ impl TreadBlock {
         outcome
     }
 
-    /// Lets the block rest under its load for `duration` [s] without the time going on: contacts age
+    /// Lets the block rest under its load for `duration` \[s\] without the time going on: contacts age
     /// and cool. A rest before the road starts need not be simulated.
     pub fn rest(&mut self, duration: f64) {
         self.memory.rest(&self.params.effect, duration, &mut self.state);
@@ -138,12 +138,12 @@ impl TreadBlock {
         self.memory.show(&self.params.effect, &mut self.outputs);
     }
 
-    /// Worn depth of the contact nodes [m], from the run-in to the run-out edge.
+    /// Worn depth of the contact nodes \[m\], from the run-in to the run-out edge.
     pub fn worn(&self) -> &[f64] {
         &self.state.worn[..self.reduction.contact_nodes()]
     }
 
-    /// Sets the worn depth of the contact nodes [m], as a cycle-jump over many metres does.
+    /// Sets the worn depth of the contact nodes \[m\], as a cycle-jump over many metres does.
     pub fn set_worn(&mut self, depth: &[f64]) {
         for (worn, depth) in self.state.worn.iter_mut().zip(depth) {
             *worn = *depth;
@@ -151,7 +151,7 @@ impl TreadBlock {
         self.observe();
     }
 
-    /// Time reached [s].
+    /// Time reached \[s\].
     pub fn time(&self) -> f64 {
         self.state.time
     }
@@ -245,8 +245,8 @@ impl TreadBlock {
     }
 }
 
-/// Wears the nodes over a step of `h` [s]; returns the mass worn off [kg] and the energy of the contact
-/// springs [J] that goes with it: pressure times what is lost in depth.
+/// Wears the nodes over a step of `h` \[s\]; returns the mass worn off \[kg\] and the energy of the contact
+/// springs \[J\] that goes with it: pressure times what is lost in depth.
 fn wear_off(
     law: &Wear,
     density: f64,

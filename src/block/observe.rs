@@ -54,12 +54,12 @@ impl Stations {
 }
 
 impl TreadBlock {
-    /// Compression of the contact nodes [m] as the state stands.
+    /// Compression of the contact nodes \[m\] as the state stands.
     pub(super) fn compression(&self) -> Vec<f64> {
         self.stations.compression.to_vec()
     }
 
-    /// Displacements [m] of all mesh nodes relative to the clamped face, block frame: x and z per
+    /// Displacements \[m\] of all mesh nodes relative to the clamped face, block frame: x and z per
     /// node, in the order of [`Mesh::position`].
     pub fn field(&self) -> Vec<[f64; 2]> {
         let scale = (self.params.rubber.density * self.params.block.width).sqrt();

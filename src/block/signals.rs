@@ -9,42 +9,42 @@ pub const STATIONS: usize = 21;
 /// Everything that the block tells at a communication point, SI units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outputs {
-    /// Force of the block on the belt [N], road frame: x, z.
+    /// Force of the block on the belt \[N\], road frame: x, z.
     pub force: [f64; 2],
-    /// Moment of the block on the belt about the middle of the clamped face [N m]; positive about
+    /// Moment of the block on the belt about the middle of the clamped face \[N m\]; positive about
     /// +y of the right-handed frame x forward, z up (z F_x − x F_z).
     pub moment_y: f64,
-    /// Force of the road on the block [N], road frame: x, z.
+    /// Force of the road on the block \[N\], road frame: x, z.
     pub contact_force: [f64; 2],
-    /// Run-in edge of the tread face relative to the clamped face [m], block frame: x, z.
+    /// Run-in edge of the tread face relative to the clamped face \[m\], block frame: x, z.
     pub run_in_displacement: [f64; 2],
-    /// Its velocity [m/s].
+    /// Its velocity \[m/s\].
     pub run_in_velocity: [f64; 2],
-    /// Run-out edge of the tread face relative to the clamped face [m], block frame: x, z.
+    /// Run-out edge of the tread face relative to the clamped face \[m\], block frame: x, z.
     pub run_out_displacement: [f64; 2],
-    /// Its velocity [m/s].
+    /// Its velocity \[m/s\].
     pub run_out_velocity: [f64; 2],
-    /// Friction force over normal force, positive when the road drags the block to +x [-].
+    /// Friction force over normal force, positive when the road drags the block to +x \[-\].
     pub friction_coefficient: f64,
-    /// Share of the contact area in which the rubber sticks, |v| below the smoothing speed [-].
+    /// Share of the contact area in which the rubber sticks, |v| below the smoothing speed \[-\].
     pub stick_fraction: f64,
-    /// Share of the tread face that touches the road [-].
+    /// Share of the tread face that touches the road \[-\].
     pub area_fraction: f64,
-    /// Power lost in friction [W].
+    /// Power lost in friction \[W\].
     pub friction_power: f64,
-    /// Contact pressure at the stations from run-in to run-out edge [Pa].
+    /// Contact pressure at the stations from run-in to run-out edge \[Pa\].
     pub pressure: [f64; STATIONS],
-    /// Speed of the tread face over the road at the stations [m/s].
+    /// Speed of the tread face over the road at the stations \[m/s\].
     pub sliding_speed: [f64; STATIONS],
-    /// Mass worn off since initialization [kg].
+    /// Mass worn off since initialization \[kg\].
     pub wear_mass: f64,
-    /// Largest worn depth [m].
+    /// Largest worn depth \[m\].
     pub wear_depth_max: f64,
-    /// Height of the clamped face's middle above the road [m].
+    /// Height of the clamped face's middle above the road \[m\].
     pub carriage_z: f64,
-    /// Tangential deflection of the clamped face against its drive [m], 0 but for a compliant rig.
+    /// Tangential deflection of the clamped face against its drive \[m\], 0 but for a compliant rig.
     pub deflection: f64,
-    /// Its velocity [m/s].
+    /// Its velocity \[m/s\].
     pub deflection_velocity: f64,
 }
 
@@ -82,9 +82,9 @@ pub struct InputSpec {
     pub unit: &'static str,
     /// Unit in which people read it.
     pub display: Option<DisplayUnit>,
-    /// Largest magnitude that is accepted [unit]; beyond it the input is an error of the master.
+    /// Largest magnitude that is accepted \[unit\]; beyond it the input is an error of the master.
     pub limit: f64,
-    /// Smallest accepted value [unit].
+    /// Smallest accepted value \[unit\].
     pub min: f64,
     /// What it is.
     pub doc: &'static str,
@@ -105,7 +105,7 @@ pub struct OutputSpec {
     pub unit: &'static str,
     /// Unit in which people read it.
     pub display: Option<DisplayUnit>,
-    /// Typical size [unit].
+    /// Typical size \[unit\].
     pub nominal: f64,
     /// What it is.
     pub doc: &'static str,

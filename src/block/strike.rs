@@ -18,7 +18,7 @@ impl TreadBlock {
         self.observe();
     }
 
-    /// Displacement [m] and velocity [m/s] along the road of the clamped face against its prescribed
+    /// Displacement \[m\] and velocity \[m/s\] along the road of the clamped face against its prescribed
     /// motion: zero but on a rig that gives way.
     pub fn give(&self) -> [f64; 2] {
         let at = self.linear.base.iter().position(|dof| dof.axis == 0);

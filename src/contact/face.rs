@@ -7,33 +7,33 @@ use crate::pack::{Aligned, Pack, LANES};
 use crate::params::Contact;
 use multiversion::multiversion;
 
-/// Gap [m] of the padding nodes that fill the last pack: out of reach of any road.
+/// Gap \[m\] of the padding nodes that fill the last pack: out of reach of any road.
 const OUT_OF_REACH: f64 = 1e3;
 
 /// The tread face and the laws that hold on it. Vectors per node are padded to full packs.
 #[derive(Clone, Debug)]
 pub struct Face {
-    /// Area of each node [m²]; 0 in the padding.
+    /// Area of each node \[m²\]; 0 in the padding.
     pub area: Aligned,
-    /// How far each node of the undeformed face lies behind the plane of the face [m].
+    /// How far each node of the undeformed face lies behind the plane of the face \[m\].
     pub profile: Aligned,
-    /// Speed over which friction is smoothed [m/s]: the scale of the solver's tolerance.
+    /// Speed over which friction is smoothed \[m/s\]: the scale of the solver's tolerance.
     pub smoothing_speed: f64,
     /// Friction characteristic.
     pub friction: Law,
     /// Contact stiffness.
     pub contact: Contact,
-    /// Load-independent shear strength [Pa] where there is contact (adhesion).
+    /// Load-independent shear strength \[Pa\] where there is contact (adhesion).
     pub shear_strength: f64,
-    /// Speed over which the shear strength is smoothed [m/s].
+    /// Speed over which the shear strength is smoothed \[m/s\].
     pub shear_smoothing: f64,
-    /// Pull-off pressure [Pa] of full contact (adhesion).
+    /// Pull-off pressure \[Pa\] of full contact (adhesion).
     pub pull_off: f64,
-    /// Pressure over which the adhering share of the face grows [Pa].
+    /// Pressure over which the adhering share of the face grows \[Pa\].
     pub adhesion_pressure: f64,
-    /// Pressure per pressure and approach speed [s/m] (contact damping).
+    /// Pressure per pressure and approach speed \[s/m\] (contact damping).
     pub damping: f64,
-    /// Pressure per approach speed [Pa s/m] (contact damping).
+    /// Pressure per approach speed \[Pa s/m\] (contact damping).
     pub viscosity: f64,
     /// Height of the road, where it is not plane.
     pub road: Option<Texture>,
@@ -42,26 +42,26 @@ pub struct Face {
 /// Forces of the road on the contact nodes and how they change, road frame; padded.
 #[derive(Clone, Debug, Default)]
 pub struct Traction {
-    /// Tangential force [N].
+    /// Tangential force \[N\].
     pub tangential: Aligned,
-    /// Normal force [N].
+    /// Normal force \[N\].
     pub normal: Aligned,
-    /// −∂(tangential)/∂(tangential speed) [N s/m].
+    /// −∂(tangential)/∂(tangential speed) \[N s/m\].
     pub slip_slope: Aligned,
-    /// −∂(tangential)/∂(normal speed) [N s/m].
+    /// −∂(tangential)/∂(normal speed) \[N s/m\].
     pub coupling: Aligned,
-    /// −∂(normal)/∂(normal speed) [N s/m].
+    /// −∂(normal)/∂(normal speed) \[N s/m\].
     pub approach_slope: Aligned,
-    /// Pressure [Pa].
+    /// Pressure \[Pa\].
     pub pressure: Aligned,
 }
 
 /// How the normal force of each node changes with its compression and approach speed, padded.
 #[derive(Clone, Debug, Default)]
 pub struct NormalSlopes {
-    /// By the compression [N/m].
+    /// By the compression \[N/m\].
     pub stiffness: Vec<f64>,
-    /// By the approach speed [N s/m].
+    /// By the approach speed \[N s/m\].
     pub damping: Vec<f64>,
 }
 
@@ -86,7 +86,7 @@ impl Traction {
 }
 
 impl Face {
-    /// A face of nodes with these areas [m²] and profile [m]; no adhesion, no contact damping.
+    /// A face of nodes with these areas \[m²\] and profile \[m\]; no adhesion, no contact damping.
     pub fn new(
         area: &[f64],
         profile: &[f64],
@@ -116,7 +116,7 @@ impl Face {
         }
     }
 
-    /// Slopes of the normal force of each node at the pressure `p` [Pa].
+    /// Slopes of the normal force of each node at the pressure `p` \[Pa\].
     pub fn slopes_at(&self, p: f64) -> NormalSlopes {
         let slope = normal::pressure(&self.contact, normal::compression(&self.contact, p)).1;
         let damping = self.damping * p + self.viscosity;
@@ -124,10 +124,10 @@ impl Face {
         NormalSlopes { stiffness: each(slope), damping: each(damping) }
     }
 
-    /// Evaluates all nodes into `out`; returns the highest pressure [Pa]. All slices are padded.
+    /// Evaluates all nodes into `out`; returns the highest pressure \[Pa\]. All slices are padded.
     ///
-    /// `compression` [m] and its change per normal speed −`a` [s], `slip` and `lift` the speeds over
-    /// and away from the road [m/s], `factor` what effects make of friction [-].
+    /// `compression` \[m\] and its change per normal speed −`a` \[s\], `slip` and `lift` the speeds over
+    /// and away from the road \[m/s\], `factor` what effects make of friction \[-\].
     #[inline(always)]
     pub fn evaluate(
         &self,
@@ -178,7 +178,7 @@ impl Face {
         evaluate_now(self, compression, slip, lift, factor, out);
     }
 
-    /// Pressure [Pa] and its derivative by the speed away from the road [Pa s/m].
+    /// Pressure \[Pa\] and its derivative by the speed away from the road \[Pa s/m\].
     #[inline(always)]
     fn pressure(&self, compression: Pack, a: f64, lift: Pack) -> (Pack, Pack) {
         let (p, stiffness) = normal::pressures(&self.contact, compression);
@@ -210,7 +210,7 @@ impl Face {
         (pressing(sum), pressing(slope))
     }
 
-    /// Normal stress of a face at rest, pressure less pull-off [Pa], and its derivative [Pa/m].
+    /// Normal stress of a face at rest, pressure less pull-off \[Pa\], and its derivative \[Pa/m\].
     pub fn stress_at_rest(&self, compression: f64) -> (f64, f64) {
         let (p, stiffness) = normal::pressure(&self.contact, compression);
         if self.pull_off == 0.0 {

@@ -5,23 +5,23 @@ use crate::pack::Pack;
 use crate::params::{Friction, FrictionForm};
 use std::f64::consts::{FRAC_2_PI, LN_10};
 
-/// Pressure below which the pressure dependence of friction stops [Pa].
+/// Pressure below which the pressure dependence of friction stops \[Pa\].
 pub const MIN_PRESSURE: f64 = 1e3;
 
 /// Friction coefficients and their derivatives at eight points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mu {
-    /// μ [-], odd in the sliding speed.
+    /// μ \[-\], odd in the sliding speed.
     pub value: Pack,
-    /// ∂μ/∂v [s/m].
+    /// ∂μ/∂v \[s/m\].
     pub by_speed: Pack,
-    /// ∂μ/∂p [1/Pa].
+    /// ∂μ/∂p \[1/Pa\].
     pub by_pressure: Pack,
 }
 
 /// A friction characteristic.
 pub trait FrictionLaw {
-    /// Coefficients at local pressures `p` [Pa] and sliding speeds `v` [m/s].
+    /// Coefficients at local pressures `p` \[Pa\] and sliding speeds `v` \[m/s\].
     fn mu(&self, p: Pack, v: Pack) -> Mu;
 
     /// Coefficient, ∂μ/∂v and ∂μ/∂p at one point.
@@ -85,7 +85,7 @@ impl FrictionLaw for Law {
     }
 }
 
-/// What the closed forms share: μ = (2/π) atan(v/v_ε) · (max(p, 1 kPa)/p₀)ⁿ · [μ_∞ + Δμ·fall(|v|)].
+/// What the closed forms share: μ = (2/π) atan(v/v_ε) · (max(p, 1 kPa)/p₀)ⁿ · \[μ_∞ + Δμ·fall(|v|)\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Common {
     mu_inf: f64,
@@ -108,7 +108,7 @@ impl Common {
         }
     }
 
-    /// `fall` is the falling part in [0, 1], `speed_slope` is |v|·d fall/d|v| (finite at v = 0).
+    /// `fall` is the falling part in \[0, 1\], `speed_slope` is |v|·d fall/d|v| (finite at v = 0).
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack, fall: Pack, speed_slope: Pack) -> Mu {
         let splat = Pack::splat;
@@ -130,7 +130,7 @@ impl Common {
     }
 }
 
-/// Smoothed sign (2/π) atan(v/v_ε) and its derivative [s/m].
+/// Smoothed sign (2/π) atan(v/v_ε) and its derivative \[s/m\].
 #[inline(always)]
 pub fn smoothed_sign(v: Pack, smoothing_speed: f64) -> (Pack, Pack) {
     let ratio = v * Pack::splat(1.0 / smoothing_speed);

@@ -8,18 +8,18 @@ use crate::pack::{Pack, LANES};
 /// constant beyond the grid. The smoothed sign makes it odd and continuous at v = 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    /// Pressures of the grid [Pa], rising.
+    /// Pressures of the grid \[Pa\], rising.
     pub pressures: Vec<f64>,
-    /// Natural logarithms of the grid's speeds [ln(m/s)], rising.
+    /// Natural logarithms of the grid's speeds \[ln(m/s)\], rising.
     pub log_speeds: Vec<f64>,
-    /// μ [-], row per pressure.
+    /// μ \[-\], row per pressure.
     pub mu: Vec<f64>,
-    /// Width of the smoothing at v = 0 [m/s].
+    /// Width of the smoothing at v = 0 \[m/s\].
     pub smoothing_speed: f64,
 }
 
 impl Table {
-    /// A table from points (p [Pa], v [m/s], μ) that fill a grid, in any order.
+    /// A table from points (p \[Pa\], v \[m/s\], μ) that fill a grid, in any order.
     ///
     /// # Errors
     /// [`Fault::Invalid`] with every value out of range, and if the points do not fill a grid.

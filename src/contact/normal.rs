@@ -3,7 +3,7 @@
 use crate::pack::Pack;
 use crate::params::{Contact, ContactForm};
 
-/// Pressure p [Pa] and stiffness dp/du [Pa/m] at a compression u [m]; both 0 for u ≤ 0 (lift-off).
+/// Pressure p \[Pa\] and stiffness dp/du \[Pa/m\] at a compression u \[m\]; both 0 for u ≤ 0 (lift-off).
 ///
 /// Exponential: p = p_r (exp(u/u₀) − 1), after the logarithmic law of tyre-road contact (Wang et
 /// al., Tribol. Lett. 56, 2014). Power: p = p_r (u/u₀)^m.
@@ -34,7 +34,7 @@ pub fn pressure(law: &Contact, compression: f64) -> (f64, f64) {
     (p.0[0], stiffness.0[0])
 }
 
-/// Compression u [m] at which the law gives `pressure` [Pa].
+/// Compression u \[m\] at which the law gives `pressure` \[Pa\].
 pub fn compression(law: &Contact, pressure: f64) -> f64 {
     let ratio = (pressure / law.reference_pressure).max(0.0);
     match law.form {
@@ -43,7 +43,7 @@ pub fn compression(law: &Contact, pressure: f64) -> f64 {
     }
 }
 
-/// Elastic energy per area ∫₀ᵘ p du [J/m²] stored in the contact springs.
+/// Elastic energy per area ∫₀ᵘ p du \[J/m²\] stored in the contact springs.
 pub fn energy(law: &Contact, compression: f64) -> f64 {
     if compression <= 0.0 {
         return 0.0;

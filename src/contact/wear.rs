@@ -2,12 +2,12 @@
 
 use crate::params::Wear;
 
-/// Pressure at which [`Wear::coefficient`] holds [Pa].
+/// Pressure at which [`Wear::coefficient`] holds \[Pa\].
 pub const REFERENCE_PRESSURE: f64 = 250e3;
-/// Speed at which [`Wear::coefficient`] holds [m/s].
+/// Speed at which [`Wear::coefficient`] holds \[m/s\].
 pub const REFERENCE_SPEED: f64 = 0.3;
 
-/// Mass worn per area and sliding distance, η = k₁ μ (p/p₀)^k₂ (|v|/v₀)^k₃ [kg/m³].
+/// Mass worn per area and sliding distance, η = k₁ μ (p/p₀)^k₂ (|v|/v₀)^k₃ \[kg/m³\].
 ///
 /// Archard: k₂ = 1, k₃ = 0, μ absorbed in k₁; Fleischer: k₂ = 1, k₃ = 0; Hofstetter and
 /// Viswanath-Bellow: powers of pressure and speed.
@@ -28,7 +28,7 @@ pub fn rate(law: &Wear, mu: f64, pressure: f64, speed: f64) -> f64 {
     law.coefficient * mu.abs() * by_pressure * by_speed
 }
 
-/// Growth of the worn depth [m/s] at a point that slides at `speed` [m/s].
+/// Growth of the worn depth \[m/s\] at a point that slides at `speed` \[m/s\].
 pub fn depth_rate(law: &Wear, density: f64, mu: f64, pressure: f64, speed: f64) -> f64 {
     rate(law, mu, pressure, speed) * speed.abs() / density
 }

@@ -35,7 +35,7 @@ impl Known {
 /// One signal's history and where its motion stands.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 struct Signal {
-    /// Last values at communication points, newest first, with their times [s].
+    /// Last values at communication points, newest first, with their times \[s\].
     past: [(f64, f64); 2],
     /// How many of them are known.
     known: usize,
@@ -81,7 +81,7 @@ pub struct Predictor {
 }
 
 impl Predictor {
-    /// The motion over the step of `h` [s] that starts at `time` [s], from what the master set for
+    /// The motion over the step of `h` \[s\] that starts at `time` \[s\], from what the master set for
     /// its start, in the order x, z, angle, load.
     pub fn segment(&mut self, time: f64, h: f64, now: [Known; 4]) -> Segment {
         let mut cubics = [Cubic::default(); 4];

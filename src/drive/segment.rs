@@ -1,6 +1,6 @@
 //! The inputs over one communication step as polynomials of time.
 
-/// Polynomial c₀ + c₁ s + c₂ s² + c₃ s³ of the time s [s] since the start of a segment.
+/// Polynomial c₀ + c₁ s + c₂ s² + c₃ s³ of the time s \[s\] since the start of a segment.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Cubic(pub [f64; 4]);
 
@@ -15,7 +15,7 @@ impl Cubic {
         Self([value, slope, 0.0, 0.0])
     }
 
-    /// Cubic Hermite interpolation between two values and their rates over `h` [s].
+    /// Cubic Hermite interpolation between two values and their rates over `h` \[s\].
     pub fn hermite(h: f64, (x0, v0): (f64, f64), (x1, v1): (f64, f64)) -> Self {
         let mean = (x1 - x0) / h;
         Self([x0, v0, (3.0 * mean - 2.0 * v0 - v1) / h, (v0 + v1 - 2.0 * mean) / (h * h)])
@@ -45,26 +45,26 @@ impl Cubic {
 /// Road frame: x forward, z up, road at z = 0 and at rest; the angle lifts the +x side.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Segment {
-    /// Middle of the clamped face, x [m].
+    /// Middle of the clamped face, x \[m\].
     pub x: Cubic,
-    /// Middle of the clamped face, z [m]; ignored in `load` drive.
+    /// Middle of the clamped face, z \[m\]; ignored in `load` drive.
     pub z: Cubic,
-    /// Angle of the clamped face [rad].
+    /// Angle of the clamped face \[rad\].
     pub angle: Cubic,
-    /// Normal load [N]; ignored in `trajectory` drive.
+    /// Normal load \[N\]; ignored in `trajectory` drive.
     pub load: Cubic,
 }
 
 /// Values of the inputs at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Pose {
-    /// Middle of the clamped face, x [m].
+    /// Middle of the clamped face, x \[m\].
     pub x: f64,
-    /// Middle of the clamped face, z [m].
+    /// Middle of the clamped face, z \[m\].
     pub z: f64,
-    /// Angle of the clamped face [rad].
+    /// Angle of the clamped face \[rad\].
     pub angle: f64,
-    /// Normal load [N].
+    /// Normal load \[N\].
     pub load: f64,
 }
 
@@ -79,7 +79,7 @@ impl Segment {
         }
     }
 
-    /// Pose at `s` [s].
+    /// Pose at `s` \[s\].
     pub fn pose(&self, s: f64) -> Pose {
         Pose { x: self.x.at(s), z: self.z.at(s), angle: self.angle.at(s), load: self.load.at(s) }
     }

@@ -6,7 +6,7 @@ use super::stage::Stage;
 use super::state::State;
 use crate::contact::{normal, Face};
 
-/// Energies [J] since the ledger was opened, in the frame that moves with the clamped face.
+/// Energies \[J\] since the ledger was opened, in the frame that moves with the clamped face.
 ///
 /// belt + load = Δelastic + Δkinetic + damping + friction + wear + carriage (theory eq. 3.12).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -30,7 +30,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// What is left over [J]: zero but for the error of the integrator.
+    /// What is left over \[J\]: zero but for the error of the integrator.
     pub fn remainder(&self) -> f64 {
         let gained = self.stored - self.stored_at_start;
         let lost = self.damping + self.friction + self.wear + self.carriage;
@@ -47,7 +47,7 @@ impl Ledger {
     }
 }
 
-/// Powers [W] at one instant.
+/// Powers \[W\] at one instant.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(super) struct Power {
     belt: f64,
@@ -86,7 +86,7 @@ pub(super) fn power(linear: &Linear, stage: &Stage, motion: &Kinematics) -> Powe
     out
 }
 
-/// Energy stored in block, contact springs and motion [J]; base model (no Maxwell branches).
+/// Energy stored in block, contact springs and motion \[J\]; base model (no Maxwell branches).
 pub(super) fn stored(linear: &Linear, face: &Face, state: &State, compression: &[f64]) -> f64 {
     let block: f64 = (0..linear.modes())
         .map(|m| {

@@ -78,7 +78,7 @@ pub fn settle(linear: &Linear, face: &Face, pose: Pose, state: &mut State) -> Re
     Err(failure(state.time, u.amax()))
 }
 
-/// Compression of node `i` [m], the middle of the clamped face at `place`.
+/// Compression of node `i` \[m\], the middle of the clamped face at `place`.
 fn compression(
     linear: &Linear,
     face: &Face,
@@ -93,7 +93,7 @@ fn compression(
     road - (place[1] + up[0] * x + up[1] * z) - face.profile[i] - state.worn[i]
 }
 
-/// Static compliance of the contact degrees of freedom [m/N].
+/// Static compliance of the contact degrees of freedom \[m/N\].
 fn compliance(linear: &Linear, stiffness_factor: f64) -> DMatrix<f64> {
     let (nodes, stride) = (linear.nodes, linear.stride);
     let modes = DMatrix::from_fn(2 * nodes, linear.modes(), |c, m| {

@@ -6,17 +6,17 @@ use crate::drive::Segment;
 /// Prescribed motion of the clamped face at one instant, road frame.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Kinematics {
-    /// Position x, z [m].
+    /// Position x, z \[m\].
     pub position: [f64; 2],
-    /// Velocity x, z [m/s].
+    /// Velocity x, z \[m/s\].
     pub velocity: [f64; 2],
-    /// Acceleration x, z [m/s²].
+    /// Acceleration x, z \[m/s²\].
     pub acceleration: [f64; 2],
     /// sin and cos of the angle.
     pub sin_cos: [f64; 2],
-    /// Angular velocity [rad/s].
+    /// Angular velocity \[rad/s\].
     pub omega: f64,
-    /// Normal load [N].
+    /// Normal load \[N\].
     pub load: f64,
 }
 
@@ -43,7 +43,7 @@ impl Kinematics {
     }
 }
 
-/// Prescribed motion at `s` [s] after the start of the segment.
+/// Prescribed motion at `s` \[s\] after the start of the segment.
 pub fn kinematics(segment: &Segment, s: f64) -> Kinematics {
     let (sin, cos) = segment.angle.at(s).sin_cos();
     Kinematics {
@@ -62,12 +62,12 @@ pub fn to_block(motion: &Kinematics, [x, z]: [f64; 2]) -> [f64; 2] {
     [cos * x + sin * z, -sin * x + cos * z]
 }
 
-/// Prescribed acceleration of the clamped face in the block's frame [m/s²].
+/// Prescribed acceleration of the clamped face in the block's frame \[m/s²\].
 pub(super) fn inertia(linear: &Linear, motion: &Kinematics) -> [f64; 2] {
     to_block(motion, linear.prescribed_acceleration(motion.acceleration))
 }
 
-/// Velocity of the free clamped face in the block's frame [m/s].
+/// Velocity of the free clamped face in the block's frame \[m/s\].
 pub(super) fn free_face_velocity(
     linear: &Linear,
     motion: &Kinematics,

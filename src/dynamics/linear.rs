@@ -12,11 +12,11 @@ use crate::reduction::Reduction;
 pub struct BaseDof {
     /// 0: along the road, 1: normal to it.
     pub axis: usize,
-    /// Mass [kg] that moves with the clamped face.
+    /// Mass \[kg\] that moves with the clamped face.
     pub mass: f64,
-    /// Damping [N s/m].
+    /// Damping \[N s/m\].
     pub damping: f64,
-    /// Stiffness [N/m] towards 0.
+    /// Stiffness \[N/m\] towards 0.
     pub stiffness: f64,
 }
 
@@ -26,25 +26,25 @@ pub struct BaseDof {
 /// z̈ + βω²ż + ω²(z + Σ gⱼ(z − yⱼ)) = Φᵀf − Γ·a, ẏⱼ = (z − yⱼ)/τⱼ, per mode (theory eq. 3.1).
 #[derive(Clone, Debug)]
 pub struct Linear {
-    /// ω² [1/s²] per mode.
+    /// ω² \[1/s²\] per mode.
     pub omega2: Aligned,
-    /// Stiffness-proportional damping β [s].
+    /// Stiffness-proportional damping β \[s\].
     pub damping: f64,
     /// Number of contact nodes.
     pub nodes: usize,
     /// The same, padded.
     pub stride: usize,
-    /// Contact displacements per mode [kg^−1/2]: mode m at `m * 2 * stride`, x of all nodes then z.
+    /// Contact displacements per mode \[kg^−1/2\]: mode m at `m * 2 * stride`, x of all nodes then z.
     pub by_mode: Aligned,
     /// The transpose: contact displacement c (of 2 · stride) at `c * modes`.
     pub by_contact: Aligned,
-    /// Coupling Γ [kg^1/2] to the acceleration of the clamped face: x, z, rotation.
+    /// Coupling Γ \[kg^1/2\] to the acceleration of the clamped face: x, z, rotation.
     pub coupling: [Aligned; 3],
-    /// Mass of the block [kg].
+    /// Mass of the block \[kg\].
     pub block_mass: f64,
-    /// Positions of the contact nodes from the middle of the clamped face: x [m].
+    /// Positions of the contact nodes from the middle of the clamped face: x \[m\].
     pub node_x: Aligned,
-    /// The same, z [m]: −h.
+    /// The same, z \[m\]: −h.
     pub node_z: f64,
     /// Directions in which the clamped face is free.
     pub base: Vec<BaseDof>,
@@ -125,7 +125,7 @@ impl Linear {
         vector
     }
 
-    /// Prescribed acceleration that the block's inertia feels [m/s²].
+    /// Prescribed acceleration that the block's inertia feels \[m/s²\].
     pub fn prescribed_acceleration(&self, acceleration: [f64; 2]) -> [f64; 2] {
         let [x, z] = self.prescribed(acceleration);
         [if self.road_moves { 0.0 } else { x }, z]

@@ -6,20 +6,20 @@ use super::linear::Linear;
 use crate::contact::NormalSlopes;
 use crate::pack::Aligned;
 
-/// For stage equations with coefficient a [s] (γh/2 of the step h).
+/// For stage equations with coefficient a \[s\] (γh/2 of the step h).
 #[derive(Clone, Debug)]
 pub struct StageMatrices {
-    /// Coefficient a [s]; 0: not yet computed.
+    /// Coefficient a \[s\]; 0: not yet computed.
     pub a: f64,
-    /// Stiffness factor that they hold for [-].
+    /// Stiffness factor that they hold for \[-\].
     pub stiffness_factor: f64,
-    /// Angle [rad] that they hold for (matters only where the clamped face is free).
+    /// Angle \[rad\] that they hold for (matters only where the clamped face is free).
     pub angle: f64,
-    /// sₘ = 1/(1 + aβω² + a²ω²κ) per mode [-].
+    /// sₘ = 1/(1 + aβω² + a²ω²κ) per mode \[-\].
     pub s: Aligned,
-    /// a·ω²·κ per mode [1/s]; κ = stiffness factor and branches as the stage sees them.
+    /// a·ω²·κ per mode \[1/s\]; κ = stiffness factor and branches as the stage sees them.
     pub a_omega2: Aligned,
-    /// S = W⁻¹ [N s/m], W = a Φ s Φᵀ + a q N⁻¹ qᵀ the Delassus matrix: contact velocities per contact
+    /// S = W⁻¹ \[N s/m\], W = a Φ s Φᵀ + a q N⁻¹ qᵀ the Delassus matrix: contact velocities per contact
     /// force, both in the block's frame, x of all nodes then z, without padding.
     pub inverse_delassus: Aligned,
     /// S split for a block that is not turned.
@@ -28,20 +28,20 @@ pub struct StageMatrices {
     pub base_coupling: Aligned,
     /// q = e − Φ s Γ̃ per free direction: motion of the contact nodes per velocity of the face.
     pub q: Aligned,
-    /// N⁻¹ [1/kg], 2 × 2.
+    /// N⁻¹ \[1/kg\], 2 × 2.
     pub n_inverse: [f64; 4],
 }
 
-/// S = [S_tt S_tn; S_nt S_nn] with the normal velocities eliminated (theory eq. 3.9): what one vector
+/// S = \[S_tt S_tn; S_nt S_nn\] with the normal velocities eliminated (theory eq. 3.9): what one vector
 /// is multiplied by stands in one matrix, column by column of 2 · stride numbers.
 #[derive(Clone, Debug)]
 pub struct FlatMatrices {
     /// Slope of the normal force by the normal velocity that the elimination assumes, per node
-    /// [N s/m].
+    /// \[N s/m\].
     pub normal_slope: Aligned,
-    /// [B; Pᵀ], B = S_tt − P S_nt symmetric, P = S_tn A⁻¹.
+    /// \[B; Pᵀ\], B = S_tt − P S_nt symmetric, P = S_tn A⁻¹.
     pub by_tangential: Aligned,
-    /// [P; A⁻¹], A⁻¹ = (S_nn + normal slope)⁻¹ symmetric.
+    /// \[P; A⁻¹\], A⁻¹ = (S_nn + normal slope)⁻¹ symmetric.
     pub by_normal: Aligned,
     /// A⁻¹ and S_tn A⁻¹ while they are made, without padding.
     room: [Aligned; 2],
@@ -208,7 +208,7 @@ impl FlatMatrices {
     }
 }
 
-/// Unit vector of a road axis (0: along, 1: up) in the frame of a block turned by `angle` [rad].
+/// Unit vector of a road axis (0: along, 1: up) in the frame of a block turned by `angle` \[rad\].
 pub fn in_block_frame(axis: usize, angle: f64) -> [f64; 2] {
     let (sin, cos) = angle.sin_cos();
     if axis == 0 {

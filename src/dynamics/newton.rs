@@ -27,17 +27,17 @@ const SLOW: f64 = 0.2;
 /// A direction and the buffers to find it.
 #[derive(Clone, Debug)]
 pub(super) struct Newton {
-    /// Change of the contact velocities [m/s], padded.
+    /// Change of the contact velocities \[m/s\], padded.
     direction: Aligned,
-    /// v − v_free [m/s], padded.
+    /// v − v_free \[m/s\], padded.
     difference: Aligned,
-    /// f_n + (assumed slope)·(v − v_free)_n [N].
+    /// f_n + (assumed slope)·(v − v_free)_n \[N\].
     normal: Aligned,
-    /// B d_t [N] and Pᵀ d_t [m/s].
+    /// B d_t \[N\] and Pᵀ d_t \[m/s\].
     of_tangential: Aligned,
-    /// P φ [N] and A⁻¹ φ [m/s].
+    /// P φ \[N\] and A⁻¹ φ \[m/s\].
     of_normal: Aligned,
-    /// What is left of the tangential balance [N].
+    /// What is left of the tangential balance \[N\].
     residual: Aligned,
     diagonal: Aligned,
     matrix: Aligned,
@@ -45,7 +45,7 @@ pub(super) struct Newton {
     inverse: Aligned,
     known: bool,
     compact: Aligned,
-    /// −∂f/∂v per node in the block's frame: xx, xz, zx, zz [N s/m].
+    /// −∂f/∂v per node in the block's frame: xx, xz, zx, zz \[N s/m\].
     slopes: Vec<[f64; 4]>,
     nodes: usize,
 }

@@ -14,7 +14,7 @@ use crate::pack::Aligned;
 pub struct Convergence {
     /// Iterations done.
     pub iterations: usize,
-    /// Last change of a velocity [m/s].
+    /// Last change of a velocity \[m/s\].
     pub change: f64,
     /// Did it converge?
     pub converged: bool,
@@ -34,25 +34,25 @@ pub struct Stage {
     pub w: Aligned,
     /// y* per branch and mode.
     pub y: Aligned,
-    /// Contact displacements Φ z* [m], block frame.
+    /// Contact displacements Φ z* \[m\], block frame.
     pub u: Aligned,
-    /// Free coordinates of the clamped face, starred [m].
+    /// Free coordinates of the clamped face, starred \[m\].
     pub base: [f64; 2],
-    /// Their velocities, starred [m/s].
+    /// Their velocities, starred \[m/s\].
     pub base_velocity: [f64; 2],
     /// Solution: modal velocities.
     pub w_end: Aligned,
-    /// Solution: velocities of the free face [m/s].
+    /// Solution: velocities of the free face \[m/s\].
     pub base_velocity_end: [f64; 2],
-    /// Solution (and first guess): contact velocities [m/s], block frame, with the free face's.
+    /// Solution (and first guess): contact velocities \[m/s\], block frame, with the free face's.
     pub v: Aligned,
-    /// Solution: contact forces [N], block frame.
+    /// Solution: contact forces \[N\], block frame.
     pub force: Aligned,
-    /// Speed over the road and away from it [m/s] at the last evaluation.
+    /// Speed over the road and away from it \[m/s\] at the last evaluation.
     pub slip: Aligned,
-    /// Speed away from the road [m/s] at the last evaluation.
+    /// Speed away from the road \[m/s\] at the last evaluation.
     pub lift: Aligned,
-    /// Compression [m] at the last evaluation.
+    /// Compression \[m\] at the last evaluation.
     pub compression: Aligned,
     /// Forces and slopes at the last evaluation.
     pub traction: Traction,
@@ -96,7 +96,7 @@ impl Stage {
         }
     }
 
-    /// Velocity [m/s] with which the prescribed motion carries contact node `i`, road frame.
+    /// Velocity \[m/s\] with which the prescribed motion carries contact node `i`, road frame.
     pub fn carried(&self, i: usize) -> [f64; 2] {
         [self.carried[i], self.carried[self.slip.len() + i]]
     }
@@ -266,7 +266,7 @@ impl Stage {
         }
     }
 
-    /// Forces and slopes at the present velocities; returns the highest pressure [Pa].
+    /// Forces and slopes at the present velocities; returns the highest pressure \[Pa\].
     #[inline(always)]
     fn evaluate(&mut self, face: &Face, a: f64, motion: &Kinematics, factor: &[f64]) -> f64 {
         let stride = self.slip.len();

@@ -6,31 +6,31 @@ use crate::pack::Aligned;
 /// State of motion at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// Time [s].
+    /// Time \[s\].
     pub time: f64,
-    /// Modal displacements [kg^1/2 m].
+    /// Modal displacements \[kg^1/2 m\].
     pub z: Aligned,
-    /// Modal velocities [kg^1/2 m/s].
+    /// Modal velocities \[kg^1/2 m/s\].
     pub w: Aligned,
-    /// Modal accelerations without the inertia of the prescribed motion [kg^1/2 m/s²].
+    /// Modal accelerations without the inertia of the prescribed motion \[kg^1/2 m/s²\].
     pub dw: Aligned,
-    /// Memory of the Maxwell branches, branch after branch [kg^1/2 m].
+    /// Memory of the Maxwell branches, branch after branch \[kg^1/2 m\].
     pub y: Aligned,
-    /// Free coordinates of the clamped face, in the order of [`Linear::base`] [m].
+    /// Free coordinates of the clamped face, in the order of [`Linear::base`] \[m\].
     pub base: [f64; 2],
-    /// Their velocities [m/s].
+    /// Their velocities \[m/s\].
     pub base_velocity: [f64; 2],
-    /// Their accelerations [m/s²].
+    /// Their accelerations \[m/s²\].
     pub base_acceleration: [f64; 2],
-    /// Worn depth per contact node [m].
+    /// Worn depth per contact node \[m\].
     pub worn: Aligned,
     /// Factor on the stiffness of the block (amplitude-dependent softening), 1 in the base model.
     pub stiffness_factor: f64,
     /// Factor on friction per contact node, 1 in the base model.
     pub friction_factor: Aligned,
-    /// Internal step that the error control would take next [s].
+    /// Internal step that the error control would take next \[s\].
     pub step: f64,
-    /// Scale of the motion for the error control [kg^1/2 m/s].
+    /// Scale of the motion for the error control \[kg^1/2 m/s\].
     pub scale: f64,
 }
 

@@ -16,7 +16,7 @@ const LEVELS: usize = 12;
 const TICKS: usize = 1 << LEVELS;
 /// Communication steps that differ by less than this share use the same matrices.
 const SAME_STEP: f64 = 1e-9;
-/// Time over which the scale of the error control forgets [s].
+/// Time over which the scale of the error control forgets \[s\].
 const SCALE_MEMORY: f64 = 2e-3;
 /// Share of the block's mass that moves with the tread face, for the scale of the error control.
 const MOVING_SHARE: f64 = 0.3;
@@ -24,11 +24,11 @@ const MOVING_SHARE: f64 = 0.3;
 /// What the integrator is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Error of a step over the scale of the motion [-].
+    /// Error of a step over the scale of the motion \[-\].
     pub tolerance: f64,
-    /// Largest step [s].
+    /// Largest step \[s\].
     pub max_step: f64,
-    /// Smallest step [s].
+    /// Smallest step \[s\].
     pub min_step: f64,
 }
 
@@ -98,12 +98,12 @@ impl Integrator {
         self.ledger = Some(Ledger { stored_at_start: stored, stored, ..Ledger::default() });
     }
 
-    /// Communication step [s] that the matrices are kept for.
+    /// Communication step \[s\] that the matrices are kept for.
     pub fn last_h(&self) -> f64 {
         self.last_h
     }
 
-    /// Goes on from a restored state as if the last communication step had been `last_h` [s].
+    /// Goes on from a restored state as if the last communication step had been `last_h` \[s\].
     pub fn resume(&mut self, last_h: f64) {
         self.last_h = last_h;
     }
@@ -113,7 +113,7 @@ impl Integrator {
         &self.step.stage
     }
 
-    /// Moves `state` over `h` [s]; `after_step(step size, end of step, state)` sees every accepted
+    /// Moves `state` over `h` \[s\]; `after_step(step size, end of step, state)` sees every accepted
     /// step and may change the state's factors and worn depths.
     ///
     /// # Errors
@@ -186,7 +186,7 @@ impl Integrator {
             .unwrap_or(LEVELS)
     }
 
-    /// One step of `h` from `from` [s] after the start of the segment; returns its error over the
+    /// One step of `h` from `from` \[s\] after the start of the segment; returns its error over the
     /// tolerance.
     #[allow(clippy::too_many_arguments)]
     fn try_step(

@@ -102,7 +102,7 @@ impl TrBdf2 {
         self.stage.newton.forget();
     }
 
-    /// Steps from `from` [s] after the start of the segment by `h` [s].
+    /// Steps from `from` \[s\] after the start of the segment by `h` \[s\].
     ///
     /// # Errors
     /// [`Fault::NoConvergence`] if a stage does not converge.
@@ -298,7 +298,7 @@ impl TrBdf2 {
         self.face_velocity = free_face_velocity(linear, end, &stage.base_velocity_end);
     }
 
-    /// Size of the local error in the energy norm [kg^1/2 m/s], with what is stiff filtered out as
+    /// Size of the local error in the energy norm \[kg^1/2 m/s\], with what is stiff filtered out as
     /// the implicit stage would damp it.
     pub fn error(&self, linear: &Linear, state: &State, matrices: &StageMatrices, h: f64) -> f64 {
         let mut sum = 0.0;
@@ -319,7 +319,7 @@ impl TrBdf2 {
         sum.sqrt()
     }
 
-    /// Root of twice the kinetic energy at the end of the step [kg^1/2 m/s].
+    /// Root of twice the kinetic energy at the end of the step \[kg^1/2 m/s\].
     pub fn speed(&self) -> f64 {
         dense::dot(&self.trial.w, &self.trial.w).sqrt()
     }

@@ -31,11 +31,11 @@ pub struct Adhesion {
     pub enabled: bool,
     /// Growth of the adhering share.
     pub form: Form,
-    /// Shear strength τ_a [Pa] of full contact.
+    /// Shear strength τ_a \[Pa\] of full contact.
     pub shear_strength: f64,
-    /// Pull-off p_a [Pa] of full contact.
+    /// Pull-off p_a \[Pa\] of full contact.
     pub pull_off: f64,
-    /// Pressure p_s [Pa] over which real contact saturates.
+    /// Pressure p_s \[Pa\] over which real contact saturates.
     pub saturation_pressure: f64,
 }
 
@@ -51,11 +51,11 @@ impl Default for Adhesion {
     }
 }
 
-/// Pressure over which full contact is made [Pa]: small beside any load, finite for the solver.
+/// Pressure over which full contact is made \[Pa\]: small beside any load, finite for the solver.
 const FIRST_TOUCH: f64 = 5e3;
 
 impl Adhesion {
-    /// Pressure p_s [Pa] over which the adhering share grows.
+    /// Pressure p_s \[Pa\] over which the adhering share grows.
     pub fn saturation(&self) -> f64 {
         match self.form {
             Form::FullContact => FIRST_TOUCH,

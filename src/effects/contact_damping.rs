@@ -31,9 +31,9 @@ pub struct ContactDamping {
     pub enabled: bool,
     /// Law.
     pub form: Form,
-    /// c [s/m] of the form `hunt_crossley`.
+    /// c \[s/m\] of the form `hunt_crossley`.
     pub damping: f64,
-    /// d [Pa s/m] of the form `kelvin`.
+    /// d \[Pa s/m\] of the form `kelvin`.
     pub viscosity: f64,
 }
 
@@ -44,7 +44,7 @@ impl Default for ContactDamping {
 }
 
 impl ContactDamping {
-    /// c [s/m] and d [Pa s/m] in force.
+    /// c \[s/m\] and d \[Pa s/m\] in force.
     pub fn coefficients(&self) -> (f64, f64) {
         match (self.enabled, self.form) {
             (false, _) => (0.0, 0.0),

@@ -37,7 +37,7 @@ impl Module {
 /// Width of a prior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Spread {
-    /// Log-normal around the centre; standard deviation of the logarithm [-].
+    /// Log-normal around the centre; standard deviation of the logarithm \[-\].
     Log(f64),
     /// Normal around the centre; standard deviation in the parameter's unit. For signed parameters.
     Absolute(f64),
@@ -48,7 +48,7 @@ pub enum Spread {
 pub struct FitParam {
     /// Dotted name in the parameter table.
     pub name: &'static str,
-    /// Centre of the prior [SI]; where `spread` is logarithmic, its median.
+    /// Centre of the prior \[SI\]; where `spread` is logarithmic, its median.
     pub centre: f64,
     /// Width of the prior.
     pub spread: Spread,

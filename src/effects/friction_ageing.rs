@@ -24,7 +24,7 @@ impl Form {
 /// reference speed v_r, so that the friction law keeps its meaning.
 ///
 /// `dieterich` (ageing law, Dieterich, J. Geophys. Res. 84, 1979): θ̇ = 1 − |v|θ/D_c and
-/// 1 + b·[ln(1 + θ/t_c) − ln(1 + θ_r/t_c)], θ_r = D_c/v_r. `saturating` (exponential growth of static
+/// 1 + b·\[ln(1 + θ/t_c) − ln(1 + θ_r/t_c)\], θ_r = D_c/v_r. `saturating` (exponential growth of static
 /// friction with rest: Brockley and Davis, J. Lubr. Technol. 90, 1968): share φ of full strength,
 /// φ̇ = (1 − φ)/t_c − |v|φ/D_c, and 1 + b·(φ − φ_r). Ruina's slip law is left out: its contacts do not
 /// age at rest.
@@ -34,15 +34,15 @@ pub struct FrictionAgeing {
     pub enabled: bool,
     /// How age strengthens the contact.
     pub form: Form,
-    /// Strength b [-].
+    /// Strength b \[-\].
     pub strength: f64,
-    /// Sliding distance D_c [m] that renews the contact.
+    /// Sliding distance D_c \[m\] that renews the contact.
     pub distance: f64,
-    /// Time t_c [s] from which age counts (dieterich) or in which strength saturates (saturating).
+    /// Time t_c \[s\] from which age counts (dieterich) or in which strength saturates (saturating).
     pub time: f64,
-    /// Speed v_r [m/s] in which the factor is 1.
+    /// Speed v_r \[m/s\] in which the factor is 1.
     pub reference_speed: f64,
-    /// Age [s] of the contact at initialization: the time at rest under load before it.
+    /// Age \[s\] of the contact at initialization: the time at rest under load before it.
     pub initial_age: f64,
 }
 
@@ -61,8 +61,8 @@ impl Default for FrictionAgeing {
 }
 
 impl FrictionAgeing {
-    /// Ages every node over `h` [s] of sliding at `slip` [m/s]; exact for constant speed. The age is
-    /// θ [s] (dieterich) or the share φ of full strength (saturating).
+    /// Ages every node over `h` \[s\] of sliding at `slip` \[m/s\]; exact for constant speed. The age is
+    /// θ \[s\] (dieterich) or the share φ of full strength (saturating).
     pub fn age(&self, h: f64, slip: &[f64], age: &mut [f64]) {
         let healing = match self.form {
             Form::Dieterich => 0.0,
@@ -82,7 +82,7 @@ impl FrictionAgeing {
         }
     }
 
-    /// Ages every node over `duration` [s] at rest.
+    /// Ages every node over `duration` \[s\] at rest.
     pub fn rest(&self, duration: f64, age: &mut [f64]) {
         for age in age {
             match self.form {

@@ -31,7 +31,7 @@ pub struct Misalignment {
     pub enabled: bool,
     /// Shape of the gap.
     pub form: Form,
-    /// Angle φ [rad].
+    /// Angle φ \[rad\].
     pub angle: f64,
 }
 
@@ -42,7 +42,7 @@ impl Default for Misalignment {
 }
 
 impl Misalignment {
-    /// Gap [m] at `x` [m] from the middle of the face.
+    /// Gap \[m\] at `x` \[m\] from the middle of the face.
     pub fn gap(&self, x: f64) -> f64 {
         let reach = match self.form {
             _ if !self.enabled => return 0.0,

@@ -1,7 +1,7 @@
 //! Candidate effects: one file each, physical extensions of the base model that are off by default.
 //!
 //! To add an effect: write its file (parameters, law, table, what a fit may vary) and add its line
-//! to [`effects!`]. Effects of geometry, contact and rubber act where the block is built
+//! to `effects!`. Effects of geometry, contact and rubber act where the block is built
 //! (`block::build`); what they remember is the
 //! block's memory (`block::memory`).
 

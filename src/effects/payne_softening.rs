@@ -33,11 +33,11 @@ pub struct PayneSoftening {
     pub enabled: bool,
     /// Which strain softens.
     pub form: Form,
-    /// Stiffness at small over that at large strain less 1, d = G₀/G_∞ − 1 [-].
+    /// Stiffness at small over that at large strain less 1, d = G₀/G_∞ − 1 \[-\].
     pub drop: f64,
-    /// Strain γ_c of half the loss [-].
+    /// Strain γ_c of half the loss \[-\].
     pub strain: f64,
-    /// Strain γ_r at which Young's modulus was measured [-].
+    /// Strain γ_r at which Young's modulus was measured \[-\].
     pub reference_strain: f64,
 }
 
@@ -53,9 +53,9 @@ impl Default for PayneSoftening {
     }
 }
 
-/// Time over which the amplitude is forgotten [s]: some cycles of a stick-slip vibration.
+/// Time over which the amplitude is forgotten \[s\]: some cycles of a stick-slip vibration.
 const MEMORY: f64 = 2e-3;
-/// Time over which the instantaneous strain is smoothed [s]: well below a cycle.
+/// Time over which the instantaneous strain is smoothed \[s\]: well below a cycle.
 const SMOOTHING: f64 = 30e-6;
 /// Exponent 2m of Kraus' law.
 const KRAUS_EXPONENT: f64 = 1.1;
@@ -63,7 +63,7 @@ const KRAUS_EXPONENT: f64 = 1.1;
 const RESOLUTION: f64 = 0.005;
 
 impl PayneSoftening {
-    /// Follows the strain: `amplitude` after `h` [s] at whose end the strain is `strain`.
+    /// Follows the strain: `amplitude` after `h` \[s\] at whose end the strain is `strain`.
     pub fn follow(&self, h: f64, strain: f64, amplitude: f64) -> f64 {
         match self.form {
             Form::Kraus => strain.max(amplitude * (-h / MEMORY).exp()),

@@ -8,11 +8,11 @@ use crate::{bool_param, enum_param, real_param};
 /// A mass on a spring and a damper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Oscillator {
-    /// Mass [kg].
+    /// Mass \[kg\].
     pub mass: f64,
-    /// Damping [N s/m].
+    /// Damping \[N s/m\].
     pub damping: f64,
-    /// Stiffness [N/m].
+    /// Stiffness \[N/m\].
     pub stiffness: f64,
 }
 
@@ -42,11 +42,11 @@ pub struct RigCompliance {
     pub enabled: bool,
     /// What moves.
     pub form: Form,
-    /// Compliance C [m/N].
+    /// Compliance C \[m/N\].
     pub compliance: f64,
-    /// Frequency f of the fixture without the block [Hz].
+    /// Frequency f of the fixture without the block \[Hz\].
     pub frequency: f64,
-    /// Damping ratio ζ [-].
+    /// Damping ratio ζ \[-\].
     pub damping_ratio: f64,
 }
 
@@ -63,7 +63,7 @@ impl Default for RigCompliance {
 }
 
 impl RigCompliance {
-    /// The oscillator in force; none where the effect is off. `carriage_mass` [kg].
+    /// The oscillator in force; none where the effect is off. `carriage_mass` \[kg\].
     pub fn oscillator(&self, carriage_mass: f64) -> Option<Oscillator> {
         if !self.enabled || self.compliance == 0.0 {
             return None;

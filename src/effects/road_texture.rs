@@ -21,7 +21,7 @@ impl Form {
     pub const ALL: [Self; 2] = [Self::Sine, Self::Band];
 }
 
-/// Height of the road over its own coordinate x [m].
+/// Height of the road over its own coordinate x \[m\].
 ///
 /// `sine`: a·sin(2πx/λ + φ). `band`: eight sines with wavelengths from λ/2 to 2λ, amplitudes falling
 /// as the square of the wavenumber (self-affine road, H = 1: C(q) ∝ q^−4 per direction, Persson et
@@ -33,11 +33,11 @@ pub struct RoadTexture {
     pub enabled: bool,
     /// Shape.
     pub form: Form,
-    /// Amplitude a [m].
+    /// Amplitude a \[m\].
     pub amplitude: f64,
-    /// Wavelength λ [m].
+    /// Wavelength λ \[m\].
     pub wavelength: f64,
-    /// Phase φ [rad] of the texture at x = 0.
+    /// Phase φ \[rad\] of the texture at x = 0.
     pub phase: f64,
 }
 
@@ -55,7 +55,7 @@ impl Default for RoadTexture {
 
 /// Number of sines in a band.
 const HARMONICS: usize = 8;
-/// Phases of the band [turns]: fractional parts of k² (√5 − 1)/2, which are spread without pattern.
+/// Phases of the band \[turns\]: fractional parts of k² (√5 − 1)/2, which are spread without pattern.
 const PHASES: [f64; HARMONICS] =
     [0.618034, 0.472136, 0.562306, 0.888544, 0.450850, 0.249224, 0.283666, 0.554176];
 
@@ -69,7 +69,7 @@ pub struct Texture {
 }
 
 impl Texture {
-    /// Height [m] at `x` [m].
+    /// Height \[m\] at `x` \[m\].
     pub fn height(&self, x: f64) -> f64 {
         let mut sum = 0.0;
         for k in 0..self.count {
@@ -78,7 +78,7 @@ impl Texture {
         sum
     }
 
-    /// Slope at `x` [m].
+    /// Slope at `x` \[m\].
     pub fn slope(&self, x: f64) -> f64 {
         let mut sum = 0.0;
         for k in 0..self.count {

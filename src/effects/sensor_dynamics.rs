@@ -33,9 +33,9 @@ pub struct SensorDynamics {
     pub enabled: bool,
     /// Filter.
     pub form: Form,
-    /// Time constant τ [s].
+    /// Time constant τ \[s\].
     pub time: f64,
-    /// Delay over the time constant, T/τ [-].
+    /// Delay over the time constant, T/τ \[-\].
     pub relative_delay: f64,
 }
 
@@ -85,7 +85,7 @@ impl Channel {
         Self { input: n[0], low: [n[1], n[2]], late: [n[3], n[4]], output: n[5] }
     }
 
-    /// Follows the input to `input` over `h` [s]; the sensor is active.
+    /// Follows the input to `input` over `h` \[s\]; the sensor is active.
     pub fn follow(&mut self, sensor: &SensorDynamics, h: f64, input: f64) {
         let before = self.low[0];
         if h <= 0.0 {
@@ -114,7 +114,7 @@ impl Channel {
     }
 }
 
-/// Moves y'' + 2a y' + (a² + b²)(y − u) = 0 over `h` [s] while u goes linearly from `from` to `to`;
+/// Moves y'' + 2a y' + (a² + b²)(y − u) = 0 over `h` \[s\] while u goes linearly from `from` to `to`;
 /// `state` is y, y'. Exact.
 fn oscillate(state: &mut [f64; 2], [a, b]: [f64; 2], h: f64, from: f64, to: f64) {
     let square = a * a + b * b;
@@ -168,7 +168,7 @@ pub const FIT: FitSpec = FitSpec {
 mod tests {
     use super::*;
 
-    /// Gain and phase [rad] at angular frequency `omega`, by correlation over 20 periods.
+    /// Gain and phase \[rad\] at angular frequency `omega`, by correlation over 20 periods.
     fn response(sensor: &SensorDynamics, omega: f64) -> (f64, f64) {
         let h = std::f64::consts::TAU / omega / 1000.0;
         let mut channel = Channel::default();

@@ -20,7 +20,7 @@ impl Form {
     pub const ALL: [Self; 2] = [Self::Lumped, Self::Macroasperity];
 }
 
-/// Flash temperature rise T [K] per contact node, from the friction power density q = μ p |v|.
+/// Flash temperature rise T \[K\] per contact node, from the friction power density q = μ p |v|.
 ///
 /// `lumped`: Ṫ = q/(ρ c δ φ) − T/τ with the skin δ = √(κτ/ρc) that heat reaches within τ, and
 /// μ → μ/(1 + c_T T). `macroasperity` (Persson, J. Phys.: Condens. Matter 18, 2006; memory over the
@@ -33,11 +33,11 @@ pub struct ThermalFriction {
     pub enabled: bool,
     /// How heat is kept.
     pub form: Form,
-    /// Sensitivity c_T of friction to the temperature rise [1/K].
+    /// Sensitivity c_T of friction to the temperature rise \[1/K\].
     pub sensitivity: f64,
-    /// Time constant τ [s] of the form `lumped`.
+    /// Time constant τ \[s\] of the form `lumped`.
     pub time: f64,
-    /// Diameter D [m] of a macroasperity.
+    /// Diameter D \[m\] of a macroasperity.
     pub distance: f64,
 }
 
@@ -47,16 +47,16 @@ impl Default for ThermalFriction {
     }
 }
 
-/// Heat conductivity κ of rubber [W/(m K)].
+/// Heat conductivity κ of rubber \[W/(m K)\].
 const CONDUCTIVITY: f64 = 0.3;
-/// Heat capacity ρc of rubber [J/(m³ K)].
+/// Heat capacity ρc of rubber \[J/(m³ K)\].
 const CAPACITY: f64 = 1150.0 * 1500.0;
-/// Share φ of the macroasperity contact in the face [-].
+/// Share φ of the macroasperity contact in the face \[-\].
 const CONTACT_SHARE: f64 = 0.02;
 
 impl ThermalFriction {
-    /// Temperature rise [K] of each node after `h` [s] in which it slides at `slip` [m/s] with the
-    /// tangential force `force` [N] on `area` [m²]; exact for constant power.
+    /// Temperature rise \[K\] of each node after `h` \[s\] in which it slides at `slip` \[m/s\] with the
+    /// tangential force `force` \[N\] on `area` \[m²\]; exact for constant power.
     pub fn warm(&self, h: f64, slip: &[f64], force: &[f64], area: &[f64], rise: &mut [f64]) {
         let diffusivity = CONDUCTIVITY / CAPACITY;
         match self.form {
@@ -85,7 +85,7 @@ impl ThermalFriction {
         }
     }
 
-    /// Cools the contact over `duration` [s] at rest.
+    /// Cools the contact over `duration` \[s\] at rest.
     pub fn rest(&self, duration: f64, rise: &mut [f64]) {
         let rate = match self.form {
             Form::Lumped => 1.0 / self.time,
@@ -94,7 +94,7 @@ impl ThermalFriction {
         rise.iter_mut().for_each(|t| *t *= (-duration * rate).exp());
     }
 
-    /// Factor on friction at a temperature rise `rise` [K].
+    /// Factor on friction at a temperature rise `rise` \[K\].
     pub fn factor(&self, rise: f64) -> f64 {
         match self.form {
             Form::Lumped => 1.0 / (1.0 + self.sensitivity * rise),

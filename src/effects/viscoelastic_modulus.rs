@@ -8,9 +8,9 @@ use crate::{bool_param, enum_param, real_param};
 /// One branch of a generalised Maxwell model beside the elastic modulus.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Branch {
-    /// Modulus of the branch over Young's modulus [-].
+    /// Modulus of the branch over Young's modulus \[-\].
     pub share: f64,
-    /// Relaxation time [s].
+    /// Relaxation time \[s\].
     pub time: f64,
 }
 
@@ -39,9 +39,9 @@ pub struct ViscoelasticModulus {
     pub enabled: bool,
     /// Number of branches.
     pub form: Form,
-    /// Rise of the modulus from slow to fast over the static one, g = Σ gⱼ [-].
+    /// Rise of the modulus from slow to fast over the static one, g = Σ gⱼ \[-\].
     pub share: f64,
-    /// Relaxation time τ [s]; with two branches the geometric mean of theirs.
+    /// Relaxation time τ \[s\]; with two branches the geometric mean of theirs.
     pub time: f64,
 }
 

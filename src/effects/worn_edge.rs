@@ -31,9 +31,9 @@ pub struct WornEdge {
     pub enabled: bool,
     /// Shape.
     pub form: Form,
-    /// Depth d at the edge [m].
+    /// Depth d at the edge \[m\].
     pub depth: f64,
-    /// Length L of the worn part [m].
+    /// Length L of the worn part \[m\].
     pub length: f64,
 }
 
@@ -44,7 +44,7 @@ impl Default for WornEdge {
 }
 
 impl WornEdge {
-    /// Depth [m] at distance `s` [m] from the run-in edge.
+    /// Depth \[m\] at distance `s` \[m\] from the run-in edge.
     pub fn depth(&self, s: f64) -> f64 {
         let left = (1.0 - s / self.length).max(0.0);
         match self.form {

@@ -8,15 +8,15 @@ use nalgebra_sparse::{CooMatrix, CscMatrix};
 /// The unreduced model, per unit modulus, density and width.
 #[derive(Clone, Debug)]
 pub struct FullModel {
-    /// Stiffness C₁ [-] of the free degrees of freedom.
+    /// Stiffness C₁ \[-\] of the free degrees of freedom.
     pub stiffness: CscMatrix<f64>,
-    /// Consistent mass M₁ [m²] of the free degrees of freedom.
+    /// Consistent mass M₁ \[m²\] of the free degrees of freedom.
     pub mass: CscMatrix<f64>,
     /// Rigid motions of all free degrees of freedom: x, z, and rotation about the middle of the
     /// clamped face (z' forward, −x upward; see `Outputs::moment_y`).
     pub rigid: [Vec<f64>; 3],
     /// Mass coupling M₁·r of the free degrees of freedom to the motion of the clamped face,
-    /// including the consistent mass between free and clamped nodes [m²].
+    /// including the consistent mass between free and clamped nodes \[m²\].
     pub rigid_coupling: [Vec<f64>; 3],
     /// Free degree of freedom of a node's x and z, `None` at the clamped face.
     pub dof: Vec<Option<usize>>,

@@ -7,7 +7,7 @@ pub const DOFS: usize = 18;
 /// Element matrix.
 pub type ElementMatrix = SMatrix<f64, DOFS, DOFS>;
 
-/// Three Gauss points on [−1, 1] with their weights: exact to degree five.
+/// Three Gauss points on \[−1, 1\] with their weights: exact to degree five.
 const GAUSS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 9.0), (0.0, 8.0 / 9.0), (0.774_596_669_241_483_4, 5.0 / 9.0)];
 
@@ -16,7 +16,7 @@ fn lagrange(xi: f64) -> ([f64; 3], [f64; 3]) {
     ([0.5 * xi * (xi - 1.0), 1.0 - xi * xi, 0.5 * xi * (xi + 1.0)], [xi - 0.5, -2.0 * xi, xi + 0.5])
 }
 
-/// Stiffness C = ∫ Bᵀ D B dA and consistent mass M = ∫ Nᵀ N dA of a `dx` × `dz` [m] rectangle, for
+/// Stiffness C = ∫ Bᵀ D B dA and consistent mass M = ∫ Nᵀ N dA of a `dx` × `dz` \[m\] rectangle, for
 /// unit modulus, density and width (theory eq. 1.3).
 pub fn matrices(dx: f64, dz: f64, elasticity: &Matrix3<f64>) -> (ElementMatrix, ElementMatrix) {
     let mut stiffness = ElementMatrix::zeros();

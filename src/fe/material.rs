@@ -3,7 +3,7 @@
 use crate::params::Plane;
 use nalgebra::Matrix3;
 
-/// Elasticity matrix [-] for unit Young's modulus; strains ε_xx, ε_zz, γ_xz.
+/// Elasticity matrix \[-\] for unit Young's modulus; strains ε_xx, ε_zz, γ_xz.
 ///
 /// Plane strain is plane stress with E/(1 − ν²) and ν/(1 − ν) (theory eq. 1.2).
 pub fn elasticity(poisson_ratio: f64, plane: Plane) -> Matrix3<f64> {

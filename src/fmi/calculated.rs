@@ -9,7 +9,7 @@ pub struct Calculated {
     pub name: &'static str,
     /// SI unit.
     pub unit: &'static str,
-    /// Typical size [unit].
+    /// Typical size \[unit\].
     pub nominal: f64,
     /// What it is, with its equation.
     pub doc: &'static str,

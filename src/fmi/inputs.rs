@@ -4,7 +4,7 @@ use super::Refusal;
 use crate::block::{InputSpec, INPUTS};
 use crate::drive::{Known, Pose};
 
-/// Largest believable rate of each input [unit/s], in the order of [`INPUTS`]: faster is a jump.
+/// Largest believable rate of each input \[unit/s\], in the order of [`INPUTS`]: faster is a jump.
 ///
 /// 200 m/s is twice what a tyre does; 5e4 rad/s bends a belt by half a turn in 60 µs. A load may
 /// jump: the carriage's mass answers it.

@@ -6,7 +6,7 @@ use crate::drive::{Pose, Predictor};
 use crate::error::Fault;
 use crate::params::Params;
 
-/// Communication step [s].
+/// Communication step \[s\].
 const STEP: f64 = 1e-5;
 /// Number of steps; every tenth communication point is written.
 const STEPS: usize = 500;

@@ -4,21 +4,21 @@ use super::instance::Instance;
 use super::Refusal;
 use crate::block::OUTPUTS;
 
-/// Longest communication step [s]; more is a slip of units, and would keep the importer waiting.
+/// Longest communication step \[s\]; more is a slip of units, and would keep the importer waiting.
 const MAX_STEP: f64 = 10.0;
 
 /// Times of the experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Clock {
-    /// Start time [s].
+    /// Start time \[s\].
     pub start: f64,
-    /// Stop time [s], if the importer defined one.
+    /// Stop time \[s\], if the importer defined one.
     pub stop: Option<f64>,
-    /// The present communication point [s].
+    /// The present communication point \[s\].
     pub time: f64,
-    /// Time up to which the solution is good [s].
+    /// Time up to which the solution is good \[s\].
     pub last_successful: f64,
-    /// Length of the last step [s], as far as it succeeded; 0 before the first.
+    /// Length of the last step \[s\], as far as it succeeded; 0 before the first.
     pub last_step: f64,
 }
 

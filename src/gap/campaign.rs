@@ -46,22 +46,22 @@ pub struct RunSpec {
     pub file: String,
     /// What is done.
     pub kind: RunKind,
-    /// Road speed [m/s].
+    /// Road speed \[m/s\].
     #[serde(default)]
     pub road_speed_m_s: f64,
-    /// Road speed at the end of a ramp [m/s].
+    /// Road speed at the end of a ramp \[m/s\].
     pub road_speed_end_m_s: Option<f64>,
-    /// Mean pressure [Pa].
+    /// Mean pressure \[Pa\].
     #[serde(default)]
     pub mean_pressure_pa: f64,
-    /// Rest under load before the start [s].
+    /// Rest under load before the start \[s\].
     #[serde(default)]
     pub dwell_s: f64,
-    /// Length of the record [s].
+    /// Length of the record \[s\].
     pub duration_s: f64,
 }
 
-/// Size of the block [m].
+/// Size of the block \[m\].
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct BlockSize {
     /// Length.
@@ -75,11 +75,11 @@ pub struct BlockSize {
 /// The rig.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Rig {
-    /// Mass of the carriage [kg].
+    /// Mass of the carriage \[kg\].
     pub load_carriage_mass_kg: f64,
-    /// Damping of the carriage [N s/m].
+    /// Damping of the carriage \[N s/m\].
     pub load_carriage_damping_n_s_m: f64,
-    /// Linear start of the road [s].
+    /// Linear start of the road \[s\].
     pub start_ramp_s: f64,
 }
 
@@ -114,14 +114,14 @@ pub struct Plan {
 /// A record: time and channels of equal length.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Record {
-    /// Time [s].
+    /// Time \[s\].
     pub time: Vec<f64>,
     /// Channels; `None` where a channel is missing or unusable.
     pub channel: [Option<Vec<f64>>; CHANNEL_COUNT],
 }
 
 impl Record {
-    /// The record up to `end` [s].
+    /// The record up to `end` \[s\].
     pub fn until(&self, end: f64) -> Self {
         let count = self.time.iter().take_while(|t| **t <= end + 1e-6).count();
         let cut = |column: &Vec<f64>| column[..count].to_vec();

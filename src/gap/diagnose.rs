@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
 
-/// Fits look at this much of every run [s]: before small errors of the frequency add up to another
+/// Fits look at this much of every run \[s\]: before small errors of the frequency add up to another
 /// phase, the residuals follow the parameters without jumps; and it is several times cheaper.
 const FIT_HORIZON: f64 = 2.9e-3;
 /// Held-out runs are judged over their whole length.
@@ -92,7 +92,7 @@ pub struct Diagnosis {
     pub indistinguishable: Vec<[String; 2]>,
     /// What to measure next.
     pub experiments: Vec<Experiment>,
-    /// Wall-clock time [s].
+    /// Wall-clock time \[s\].
     pub seconds: f64,
     /// How it was done.
     pub settings: Settings,

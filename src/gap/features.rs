@@ -21,7 +21,7 @@ const PART: usize = 180;
 const RING_SAMPLES: usize = 100;
 /// Harmonics compared per channel.
 const HARMONICS: [usize; CHANNEL_COUNT] = [4, 3, 4, 2, 1];
-/// Speed of the soft stick indicator [m/s].
+/// Speed of the soft stick indicator \[m/s\].
 const STICK_SPEED: f64 = 0.03;
 
 /// Which kind of quantity a feature is.

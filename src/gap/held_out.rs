@@ -45,7 +45,7 @@ pub fn choose(runs: &[RunSpec]) -> Vec<usize> {
 }
 
 /// Runs to be fitted: all but the held-out ones, repetitions, and slow ramps that are as good as at
-/// rest within `horizon` [s].
+/// rest within `horizon` \[s\].
 pub fn to_fit(runs: &[RunSpec], held_out: &[usize], horizon: f64) -> Vec<usize> {
     let same = |a: &RunSpec, b: &RunSpec| {
         RunSpec { file: String::new(), ..a.clone() } == RunSpec { file: String::new(), ..b.clone() }

@@ -80,7 +80,7 @@ pub struct Bench {
     /// Runs in the order of the data vector.
     pub runs: Vec<RunSpec>,
     simulator: Simulator,
-    /// Records are compared up to this time [s].
+    /// Records are compared up to this time \[s\].
     horizon: f64,
     /// Measured features, run after run.
     pub measured: Vec<Vec<Feature>>,
@@ -98,7 +98,7 @@ pub struct Bench {
 pub type Residuals = Vec<Vec<f64>>;
 
 impl Bench {
-    /// Cuts the campaign's data up to `horizon` [s] into features.
+    /// Cuts the campaign's data up to `horizon` \[s\] into features.
     ///
     /// # Errors
     /// What stops the reduction of the block.

@@ -27,13 +27,13 @@ pub const DATASHEET: [(&str, &str); 12] = [
 
 /// Elements along and up.
 const FIT_ELEMENTS: (usize, usize) = (6, 4);
-/// Fixed-interface modes up to this frequency [Hz].
+/// Fixed-interface modes up to this frequency \[Hz\].
 const FIT_BOUND: f64 = 14e3;
 /// Tolerance of the integrator.
 const FIT_TOLERANCE: f64 = 3e-3;
-/// Height above the road at which the struck block hangs [m]; the measured approach is minus this.
+/// Height above the road at which the struck block hangs \[m\]; the measured approach is minus this.
 const HANGING: f64 = 1.0;
-/// Speed of the blow at the tread face [m/s].
+/// Speed of the blow at the tread face \[m/s\].
 const BLOW: f64 = 0.3;
 
 /// Sets the parameter `name`; `false` if it does not exist.
@@ -80,7 +80,7 @@ impl Simulator {
         Ok(Self { plan: plan.clone(), reduction })
     }
 
-    /// The run as the rig would have measured it up to `until` [s], without noise, at the campaign's
+    /// The run as the rig would have measured it up to `until` \[s\], without noise, at the campaign's
     /// sampling rate.
     ///
     /// # Errors
@@ -150,7 +150,7 @@ fn motion(plan: &Plan, spec: &RunSpec, dwell: f64) -> Slide {
     }
 }
 
-/// Road speed [m/s] of a run at `t` [s].
+/// Road speed \[m/s\] of a run at `t` \[s\].
 pub fn road_speed(plan: &Plan, spec: &RunSpec, t: f64) -> f64 {
     motion(plan, spec, 0.0).road_speed(t)
 }

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 /// A complex number: real and imaginary part.
 pub type Complex = [f64; 2];
 
-/// Lowest and highest fundamental frequency that is looked for [Hz].
+/// Lowest and highest fundamental frequency that is looked for \[Hz\].
 const SEARCH: [f64; 2] = [120.0, 6000.0];
 /// Frequencies per bin of the Fourier transform in the search.
 const OVERSAMPLING: f64 = 3.0;
@@ -22,8 +22,8 @@ pub fn mean(signal: &[f64], weights: &[f64]) -> f64 {
     signal.iter().zip(weights).map(|(s, w)| s * w).sum()
 }
 
-/// Amplitude of the oscillation a·cos(ωt + φ) as a·exp(iφ), at `frequency` [Hz] for samples every
-/// `step` [s]; `offset` is taken off before.
+/// Amplitude of the oscillation a·cos(ωt + φ) as a·exp(iφ), at `frequency` \[Hz\] for samples every
+/// `step` \[s\]; `offset` is taken off before.
 pub fn amplitude(
     signal: &[f64],
     weights: &[f64],
@@ -48,7 +48,7 @@ pub fn power([re, im]: Complex) -> f64 {
     re * re + im * im
 }
 
-/// The strongest frequency [Hz] of a signal, refined between the bins by a parabola.
+/// The strongest frequency \[Hz\] of a signal, refined between the bins by a parabola.
 pub fn fundamental(signal: &[f64], weights: &[f64], step: f64) -> f64 {
     let offset = mean(signal, weights);
     let bin = 1.0 / (signal.len() as f64 * step * OVERSAMPLING);

@@ -17,7 +17,7 @@ pub struct Cell {
     pub channel: &'static str,
     /// Contact phase.
     pub phase: &'static str,
-    /// Band [Hz].
+    /// Band \[Hz\].
     pub band: [f64; 2],
     /// G: root mean square in units of noise and floor.
     pub gap: f64,

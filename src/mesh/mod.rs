@@ -6,14 +6,14 @@
 /// face (z = 0) to the clamped face (z = h), so that the stiffness matrix has a small bandwidth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    /// x of the node columns [m], 2 per element plus one.
+    /// x of the node columns \[m\], 2 per element plus one.
     pub x: Vec<f64>,
-    /// z of the node rows [m], 2 per element plus one.
+    /// z of the node rows \[m\], 2 per element plus one.
     pub z: Vec<f64>,
 }
 
 impl Mesh {
-    /// A block of `length` × `height` [m] with `along` × `up` elements, graded towards the edges
+    /// A block of `length` × `height` \[m\] with `along` × `up` elements, graded towards the edges
     /// of the tread face and towards the face itself, where contact makes the stresses steep.
     pub fn block(length: f64, height: f64, along: usize, up: usize) -> Self {
         let x = nodes(&graded_both_ends(along, EDGE_GRADING), length, -0.5 * length);
@@ -36,7 +36,7 @@ impl Mesh {
         i * self.z.len() + j
     }
 
-    /// Position [m] of a node.
+    /// Position \[m\] of a node.
     pub fn position(&self, node: usize) -> [f64; 2] {
         [self.x[node / self.z.len()], self.z[node % self.z.len()]]
     }
@@ -56,7 +56,7 @@ impl Mesh {
         node % self.z.len() == self.z.len() - 1
     }
 
-    /// Length of the tread face that each of its nodes stands for [m]: Simpson's rule per element,
+    /// Length of the tread face that each of its nodes stands for \[m\]: Simpson's rule per element,
     /// which is what a biquadratic element makes of an even pressure.
     pub fn tread_face_weights(&self) -> Vec<f64> {
         let mut weights = vec![0.0; self.x.len()];

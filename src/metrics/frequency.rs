@@ -5,9 +5,9 @@ use crate::scenario::Spline;
 /// What repeats, and how well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Periodicity {
-    /// Frequency [Hz].
+    /// Frequency \[Hz\].
     pub frequency: f64,
-    /// Correlation at a lag of one period [-].
+    /// Correlation at a lag of one period \[-\].
     pub regularity: f64,
 }
 

@@ -9,15 +9,15 @@ pub use settle::settled_from;
 /// Traces of a sliding run at rising times; all of the same length.
 #[derive(Clone, Copy, Debug)]
 pub struct Trace<'a> {
-    /// Time [s].
+    /// Time \[s\].
     pub time: &'a [f64],
-    /// Tangential displacement of the run-in edge [m].
+    /// Tangential displacement of the run-in edge \[m\].
     pub displacement: &'a [f64],
-    /// Its velocity [m/s].
+    /// Its velocity \[m/s\].
     pub velocity: &'a [f64],
-    /// Friction coefficient of the whole contact [-].
+    /// Friction coefficient of the whole contact \[-\].
     pub friction: &'a [f64],
-    /// Share of the contact area that sticks [-].
+    /// Share of the contact area that sticks \[-\].
     pub stick: &'a [f64],
 }
 
@@ -56,19 +56,19 @@ impl Recorder {
 /// Stick-slip of the settled part of a sliding run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StickSlip {
-    /// Time from which the vibration is settled [s].
+    /// Time from which the vibration is settled \[s\].
     pub settled_from: f64,
-    /// Frequency [Hz]; 0 where the block is silent or too few periods are seen.
+    /// Frequency \[Hz\]; 0 where the block is silent or too few periods are seen.
     pub frequency: f64,
-    /// How alike one period is to the next: the correlation at a lag of one period [-].
+    /// How alike one period is to the next: the correlation at a lag of one period \[-\].
     pub regularity: f64,
-    /// Peak-to-peak displacement of the run-in edge [m].
+    /// Peak-to-peak displacement of the run-in edge \[m\].
     pub displacement_amplitude: f64,
-    /// Peak-to-peak velocity of the run-in edge [m/s].
+    /// Peak-to-peak velocity of the run-in edge \[m/s\].
     pub velocity_amplitude: f64,
-    /// Time mean of the friction coefficient [-].
+    /// Time mean of the friction coefficient \[-\].
     pub mean_friction: f64,
-    /// Time mean of the share of the contact area that sticks [-].
+    /// Time mean of the share of the contact area that sticks \[-\].
     pub stick_fraction: f64,
 }
 
@@ -76,7 +76,7 @@ pub struct StickSlip {
 /// a settled solver leaves and well below any stick-slip, whose velocity swings by more than 1.
 const SILENCE: f64 = 0.05;
 
-/// Metrics of a sliding run at road speed `speed` [m/s]; all zero for fewer than 16 samples.
+/// Metrics of a sliding run at road speed `speed` \[m/s\]; all zero for fewer than 16 samples.
 pub fn stick_slip(trace: &Trace, speed: f64) -> StickSlip {
     if trace.time.len() < 16 {
         return StickSlip {

@@ -33,14 +33,14 @@ pub struct Params {
     pub effect: Effects,
 }
 
-/// Size of the undeformed block [m].
+/// Size of the undeformed block \[m\].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
-    /// Length l in rolling direction [m].
+    /// Length l in rolling direction \[m\].
     pub length: f64,
-    /// Height h from the tread face to the clamped face [m].
+    /// Height h from the tread face to the clamped face \[m\].
     pub height: f64,
-    /// Width b across the plane of the model [m].
+    /// Width b across the plane of the model \[m\].
     pub width: f64,
 }
 
@@ -63,13 +63,13 @@ pub enum Plane {
 /// Linear viscoelastic rubber, D = β C.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rubber {
-    /// Young's modulus E [Pa].
+    /// Young's modulus E \[Pa\].
     pub young_modulus: f64,
-    /// Poisson's ratio ν [-].
+    /// Poisson's ratio ν \[-\].
     pub poisson_ratio: f64,
-    /// Density ρ [kg/m³].
+    /// Density ρ \[kg/m³\].
     pub density: f64,
-    /// Stiffness-proportional damping β [s].
+    /// Stiffness-proportional damping β \[s\].
     pub stiffness_damping: f64,
     /// Plane stress or plane strain.
     pub plane: Plane,
@@ -108,27 +108,27 @@ pub enum FrictionForm {
 pub struct Friction {
     /// Form of the law.
     pub form: FrictionForm,
-    /// Friction coefficient at high speed μ_∞ [-].
+    /// Friction coefficient at high speed μ_∞ \[-\].
     pub mu_inf: f64,
-    /// Fall from low to high speed Δμ [-].
+    /// Fall from low to high speed Δμ \[-\].
     pub mu_drop: f64,
-    /// Speed of the fall v_d [m/s].
+    /// Speed of the fall v_d \[m/s\].
     pub decay_speed: f64,
-    /// Exponent γ of the stretched exponential exp(−(|v|/v_d)^γ) [-].
+    /// Exponent γ of the stretched exponential exp(−(|v|/v_d)^γ) \[-\].
     pub decay_exponent: f64,
-    /// Width v_ε of the arctan smoothing at v = 0 [m/s].
+    /// Width v_ε of the arctan smoothing at v = 0 \[m/s\].
     pub smoothing_speed: f64,
-    /// Exponent of the local pressure [-].
+    /// Exponent of the local pressure \[-\].
     pub pressure_exponent: f64,
-    /// Pressure at which the coefficients hold [Pa].
+    /// Pressure at which the coefficients hold \[Pa\].
     pub reference_pressure: f64,
-    /// Exponent m of the speed in the rational law [-].
+    /// Exponent m of the speed in the rational law \[-\].
     pub rational_exponent: f64,
-    /// Half width k of the log-bell law in decades⁻¹ [-].
+    /// Half width k of the log-bell law in decades⁻¹ \[-\].
     pub bell_steepness: f64,
-    /// Share of the fall that is slow in the law of two exponentials [-].
+    /// Share of the fall that is slow in the law of two exponentials \[-\].
     pub slow_share: f64,
-    /// Speed over which the slow share falls [m/s].
+    /// Speed over which the slow share falls \[m/s\].
     pub slow_speed: f64,
     /// File of a measured characteristic (CSV: pressure_pa, speed_m_s, mu); empty: none.
     pub table_file: String,
@@ -169,11 +169,11 @@ pub enum ContactForm {
 pub struct Contact {
     /// Form of the law.
     pub form: ContactForm,
-    /// Reference pressure p_r [Pa].
+    /// Reference pressure p_r \[Pa\].
     pub reference_pressure: f64,
-    /// Depth u₀ over which the pressure grows e-fold [m].
+    /// Depth u₀ over which the pressure grows e-fold \[m\].
     pub depth: f64,
-    /// Exponent m of the power law [-].
+    /// Exponent m of the power law \[-\].
     pub exponent: f64,
 }
 
@@ -192,11 +192,11 @@ impl Default for Contact {
 /// p₀ = 250 kPa and v₀ = 0.3 m/s so that k₁ keeps its unit whatever the exponents.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wear {
-    /// k₁ [kg/m³]: mass per area and distance at μ = 1, p₀, v₀.
+    /// k₁ \[kg/m³\]: mass per area and distance at μ = 1, p₀, v₀.
     pub coefficient: f64,
-    /// k₂ [-].
+    /// k₂ \[-\].
     pub pressure_exponent: f64,
-    /// k₃ [-].
+    /// k₃ \[-\].
     pub speed_exponent: f64,
 }
 
@@ -210,9 +210,9 @@ impl Default for Wear {
 /// Carriage of the `load` drive.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Carriage {
-    /// Mass [kg] that moves with the clamped face in z.
+    /// Mass \[kg\] that moves with the clamped face in z.
     pub mass: f64,
-    /// Viscous damping of its motion [N s/m].
+    /// Viscous damping of its motion \[N s/m\].
     pub damping: f64,
 }
 
@@ -246,13 +246,13 @@ pub struct Solver {
     pub elements_along: usize,
     /// Elements over the height; 0: chosen from the block's size.
     pub elements_up: usize,
-    /// Fixed-interface modes up to this frequency are kept [Hz].
+    /// Fixed-interface modes up to this frequency are kept \[Hz\].
     pub frequency_bound: f64,
-    /// Error of a step relative to the motion's own scale [-].
+    /// Error of a step relative to the motion's own scale \[-\].
     pub tolerance: f64,
-    /// Largest internal step [s].
+    /// Largest internal step \[s\].
     pub max_step: f64,
-    /// Smallest internal step [s].
+    /// Smallest internal step \[s\].
     pub min_step: f64,
 }
 

@@ -42,11 +42,11 @@ pub enum Kind {
         unit: &'static str,
         /// Unit in which people read it.
         display: Option<DisplayUnit>,
-        /// Smallest allowed value [unit].
+        /// Smallest allowed value \[unit\].
         min: f64,
-        /// Largest allowed value [unit].
+        /// Largest allowed value \[unit\].
         max: f64,
-        /// Typical size [unit].
+        /// Typical size \[unit\].
         nominal: f64,
     },
     /// A count.

@@ -15,9 +15,9 @@ use nalgebra_sparse::{CooMatrix, CscMatrix};
 /// amplitudes of the fixed-interface modes.
 #[derive(Clone, Debug)]
 pub struct CraigBampton {
-    /// Reduced stiffness [-].
+    /// Reduced stiffness \[-\].
     pub stiffness: DMatrix<f64>,
-    /// Reduced mass [m²].
+    /// Reduced mass \[m²\].
     pub mass: DMatrix<f64>,
     /// Free degrees of freedom of the full model from the reduced coordinates.
     pub basis: DMatrix<f64>,
@@ -26,7 +26,7 @@ pub struct CraigBampton {
 }
 
 impl CraigBampton {
-    /// Reduces `full`, keeping all fixed-interface modes with λ = ω²ρ/E ≤ `bound` [1/m²].
+    /// Reduces `full`, keeping all fixed-interface modes with λ = ω²ρ/E ≤ `bound` \[1/m²\].
     ///
     /// These converge slowly where many degrees of freedom are contacts: for 0.1 % in a frequency they
     /// had to reach to seven times that frequency. Therefore the basis also takes what it lacks of the

@@ -17,7 +17,7 @@ use nalgebra::{DMatrix, DVector};
 pub struct Reduction {
     /// Mesh that was reduced.
     pub mesh: Mesh,
-    /// Eigenvalues λ [1/m²], ascending.
+    /// Eigenvalues λ \[1/m²\], ascending.
     pub lambda: Vec<f64>,
     /// Contact displacements per mode: rows x of the contact nodes then z, columns modes.
     pub contact_modes: DMatrix<f64>,
@@ -30,12 +30,12 @@ pub struct Reduction {
     pub shapes: DMatrix<f64>,
     /// Free degree of freedom of a node's x and z.
     pub dof: Vec<Option<usize>>,
-    /// Length of the tread face that each contact node stands for [m].
+    /// Length of the tread face that each contact node stands for \[m\].
     pub weights: Vec<f64>,
 }
 
 impl Reduction {
-    /// Meshes, assembles, reduces and decouples; `bound` is λ = ω²ρ/E [1/m²] up to which
+    /// Meshes, assembles, reduces and decouples; `bound` is λ = ω²ρ/E \[1/m²\] up to which
     /// fixed-interface modes are kept.
     ///
     /// # Errors
@@ -84,7 +84,7 @@ impl Reduction {
         self.lambda.len()
     }
 
-    /// Free eigenfrequencies [Hz] for E/ρ [m²/s²].
+    /// Free eigenfrequencies \[Hz\] for E/ρ \[m²/s²\].
     pub fn frequencies(&self, e_over_rho: f64) -> Vec<f64> {
         self.lambda.iter().map(|l| (l * e_over_rho).sqrt() / std::f64::consts::TAU).collect()
     }

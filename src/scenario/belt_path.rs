@@ -10,32 +10,32 @@ use crate::error::{Fault, Problem};
 /// slope is thus three times continuously differentiable and no inertia force jumps.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BeltPath {
-    /// Radius R of the belt outside of the patch [m].
+    /// Radius R of the belt outside of the patch \[m\].
     pub radius: f64,
-    /// Length 2a of the flattened part [m].
+    /// Length 2a of the flattened part \[m\].
     pub contact_length: f64,
-    /// Speed V of the belt relative to the axle [m/s].
+    /// Speed V of the belt relative to the axle \[m/s\].
     pub speed: f64,
-    /// Slip [-]: the flat belt moves over the road with slip·V; positive brakes, negative drives.
+    /// Slip \[-\]: the flat belt moves over the road with slip·V; positive brakes, negative drives.
     pub slip: f64,
-    /// Height of the flattened belt's clamped face above the road [m].
+    /// Height of the flattened belt's clamped face above the road \[m\].
     pub height: f64,
-    /// Length w over which the curvature goes from 0 to 1/R [m].
+    /// Length w over which the curvature goes from 0 to 1/R \[m\].
     pub blend_length: f64,
-    /// Length of belt before and behind the flat part that the path covers [m].
+    /// Length of belt before and behind the flat part that the path covers \[m\].
     pub lead: f64,
 }
 
 /// One sample of a belt path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BeltSample {
-    /// Time [s].
+    /// Time \[s\].
     pub time: f64,
-    /// Middle of the clamped face, road frame [m].
+    /// Middle of the clamped face, road frame \[m\].
     pub x: f64,
-    /// Its height above the road [m].
+    /// Its height above the road \[m\].
     pub z: f64,
-    /// Angle [rad], positive lifts the +x side.
+    /// Angle \[rad\], positive lifts the +x side.
     pub angle: f64,
 }
 
@@ -65,12 +65,12 @@ impl BeltPath {
             .collect()
     }
 
-    /// Time of the whole passage [s].
+    /// Time of the whole passage \[s\].
     pub fn duration(&self) -> f64 {
         (self.contact_length + 2.0 * self.lead) / self.speed
     }
 
-    /// Pose at time `t` [s]; the block runs from +x to −x relative to the axle, the axle in +x.
+    /// Pose at time `t` \[s\]; the block runs from +x to −x relative to the axle, the axle in +x.
     pub fn at(&self, t: f64) -> BeltSample {
         let s = 0.5 * self.contact_length + self.lead - self.speed * t;
         let (x, rise) = self.offset(s.abs());
@@ -83,7 +83,7 @@ impl BeltPath {
         }
     }
 
-    /// Pose, velocity and acceleration at time `t` [s], the latter per s and s².
+    /// Pose, velocity and acceleration at time `t` \[s\], the latter per s and s².
     ///
     /// With the signed slope α, x′ = (1 + slip)V − V cos α, z′ = −V sin α, α′ = −Vκ, and their
     /// derivatives by the chain rule.
@@ -101,7 +101,7 @@ impl BeltPath {
         [pose, velocity, acceleration]
     }
 
-    /// Samples every `step` [s] from entry to exit.
+    /// Samples every `step` \[s\] from entry to exit.
     ///
     /// # Errors
     /// [`Fault::Invalid`] with all problems of the path.
@@ -122,7 +122,7 @@ impl BeltPath {
         Ok((0..=count).map(|k| self.at(k as f64 * step)).collect())
     }
 
-    /// Slope θ [rad] at the arc length `s` ≥ 0.
+    /// Slope θ \[rad\] at the arc length `s` ≥ 0.
     fn slope(&self, s: f64) -> f64 {
         let sigma = (s - 0.5 * self.contact_length) / self.blend_length + 0.5;
         let turned = if sigma <= 0.0 {
@@ -135,7 +135,7 @@ impl BeltPath {
         turned * self.blend_length / self.radius
     }
 
-    /// Curvature κ [1/m] at the arc length `s` ≥ 0, and κ′ [1/m²].
+    /// Curvature κ \[1/m\] at the arc length `s` ≥ 0, and κ′ \[1/m²\].
     fn curvature(&self, s: f64) -> (f64, f64) {
         let w = self.blend_length;
         let sigma = ((s - 0.5 * self.contact_length) / w + 0.5).clamp(0.0, 1.0);
@@ -144,7 +144,7 @@ impl BeltPath {
         (share / self.radius, growth / self.radius)
     }
 
-    /// (∫cos θ, ∫sin θ) from 0 to `s` ≥ 0 [m]: Gauss' rule on panels that end where κ has its kinks.
+    /// (∫cos θ, ∫sin θ) from 0 to `s` ≥ 0 \[m\]: Gauss' rule on panels that end where κ has its kinks.
     fn offset(&self, s: f64) -> (f64, f64) {
         let (a, w) = (0.5 * self.contact_length, self.blend_length);
         let ends = [0.0, (a - 0.5 * w).min(s), (a + 0.5 * w).min(s), s];

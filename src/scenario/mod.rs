@@ -45,16 +45,16 @@ pub enum Inputs {
 /// Which instants a run visits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plan {
-    /// Communication step [s]: the distance of the rows.
+    /// Communication step \[s\]: the distance of the rows.
     pub step: f64,
-    /// Length of the run [s].
+    /// Length of the run \[s\].
     pub duration: f64,
     /// How the motion reaches the block.
     pub inputs: Inputs,
 }
 
 impl Scenario {
-    /// Pose and load at time `t` [s].
+    /// Pose and load at time `t` \[s\].
     pub fn pose(&self, t: f64) -> Pose {
         match self {
             Self::Slide(slide) => slide.pose(t),
@@ -77,7 +77,7 @@ impl Scenario {
         params
     }
 
-    /// Time at which the scenario starts [s].
+    /// Time at which the scenario starts \[s\].
     pub fn start(&self) -> f64 {
         match self {
             Self::Slide(_) => 0.0,
@@ -85,7 +85,7 @@ impl Scenario {
         }
     }
 
-    /// The motion over the `h` [s] after `t` [s], within one polynomial piece.
+    /// The motion over the `h` \[s\] after `t` \[s\], within one polynomial piece.
     fn segment(&self, t: f64, h: f64) -> Segment {
         let (from, to) = (self.pose(t), self.pose(t + h));
         let (rate_from, rate_to) = (self.rates(t), self.rates(t + h));
@@ -115,7 +115,7 @@ impl Scenario {
     }
 }
 
-/// Runs `scenario` with exact inputs and hands out the outputs every `step` [s], the start included.
+/// Runs `scenario` with exact inputs and hands out the outputs every `step` \[s\], the start included.
 ///
 /// # Errors
 /// What stops the block, see [`TreadBlock::advance`], and an impossible step or duration.
@@ -181,7 +181,7 @@ pub fn go_on(
     Ok(())
 }
 
-/// Moves the block from `t` to `next` [s] piece by piece; a piece shorter than rounding is no piece.
+/// Moves the block from `t` to `next` \[s\] piece by piece; a piece shorter than rounding is no piece.
 ///
 /// # Errors
 /// See [`TreadBlock::advance`].

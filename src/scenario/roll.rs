@@ -13,7 +13,7 @@ pub struct Roll {
     angle: Spline,
 }
 
-/// Longest piece of a path that one cubic stands for [s]; its error is that of Hermite interpolation
+/// Longest piece of a path that one cubic stands for \[s\]; its error is that of Hermite interpolation
 /// over it, below 1e-12 m on a tyre's path, while short steps would only cost time.
 const PIECE: f64 = 20e-6;
 
@@ -35,7 +35,7 @@ impl Roll {
         Ok(Self { x: column(|s| s.x), z: column(|s| s.z), angle: column(|s| s.angle) })
     }
 
-    /// First and last time of the path [s].
+    /// First and last time of the path \[s\].
     pub fn span(&self) -> (f64, f64) {
         let times = self.x.times();
         (times[0], times[times.len() - 1])

@@ -8,17 +8,17 @@ use crate::drive::Pose;
 /// of the model is at rest, so the clamped face moves with −v: x = −∫v dt.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slide {
-    /// Road speed after the start [m/s]; negative: the other way round.
+    /// Road speed after the start \[m/s\]; negative: the other way round.
     pub speed: f64,
-    /// Road speed at the end, reached linearly over `sweep` [m/s]; as `speed` where it is constant.
+    /// Road speed at the end, reached linearly over `sweep` \[m/s\]; as `speed` where it is constant.
     pub speed_end: f64,
-    /// Duration over which the speed goes from `speed` to `speed_end` [s]; 0: constant speed.
+    /// Duration over which the speed goes from `speed` to `speed_end` \[s\]; 0: constant speed.
     pub sweep: f64,
-    /// Duration of the linear start [s].
+    /// Duration of the linear start \[s\].
     pub start_ramp: f64,
-    /// Rest under load before the road starts [s].
+    /// Rest under load before the road starts \[s\].
     pub dwell: f64,
-    /// Normal load [N].
+    /// Normal load \[N\].
     pub load: f64,
 }
 
@@ -28,7 +28,7 @@ impl Slide {
         Self { speed, speed_end: speed, sweep: 0.0, start_ramp: 0.5e-3, dwell: 0.0, load }
     }
 
-    /// Road speed [m/s] at time `t` [s].
+    /// Road speed \[m/s\] at time `t` \[s\].
     pub fn road_speed(&self, t: f64) -> f64 {
         let s = t - self.dwell;
         if s <= 0.0 {
@@ -38,7 +38,7 @@ impl Slide {
         start * (self.speed + self.sweep_rate() * self.swept(s))
     }
 
-    /// Distance [m] that the road has moved at time `t` [s]: the integral of [`Self::road_speed`].
+    /// Distance \[m\] that the road has moved at time `t` \[s\]: the integral of [`Self::road_speed`].
     pub fn road_distance(&self, t: f64) -> f64 {
         let s = (t - self.dwell).max(0.0);
         let (ramp, rate) = (self.start_ramp, self.sweep_rate());
@@ -79,7 +79,7 @@ impl Slide {
         }
     }
 
-    /// Time spent in the sweep [s] when `s` [s] have gone since the start.
+    /// Time spent in the sweep \[s\] when `s` \[s\] have gone since the start.
     fn swept(&self, s: f64) -> f64 {
         s.min(self.sweep)
     }

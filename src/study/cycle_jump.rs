@@ -12,11 +12,11 @@ use crate::error::Fault;
 use crate::params::Params;
 use crate::scenario::{self, Inputs, Plan, Scenario, Slide};
 
-/// Distance of rows [s].
+/// Distance of rows \[s\].
 const STEP: f64 = 2e-5;
-/// The vibration settles on a new profile for so long [s].
+/// The vibration settles on a new profile for so long \[s\].
 const SETTLE: f64 = 4e-3;
-/// Wear is averaged over so long [s].
+/// Wear is averaged over so long \[s\].
 const WINDOW: f64 = 6e-3;
 
 /// A block that slides and wears by a law.
@@ -29,9 +29,9 @@ pub struct Wearing<'a> {
     pub law: WearLaw,
     /// Its factor, 1 for the law's own rate.
     pub factor: f64,
-    /// Road speed [m/s].
+    /// Road speed \[m/s\].
     pub speed: f64,
-    /// Mean pressure [Pa].
+    /// Mean pressure \[Pa\].
     pub pressure: f64,
     /// Friction coefficient at the reference.
     pub reference_mu: f64,
@@ -40,18 +40,18 @@ pub struct Wearing<'a> {
 /// How a jump went.
 #[derive(Clone, Debug)]
 pub struct Worn {
-    /// Depth at the contact nodes [m].
+    /// Depth at the contact nodes \[m\].
     pub depth: Vec<f64>,
-    /// Positions of the nodes [m].
+    /// Positions of the nodes \[m\].
     pub x: Vec<f64>,
-    /// Estimated error of the depth [m].
+    /// Estimated error of the depth \[m\].
     pub error: f64,
     /// Jumps made.
     pub jumps: usize,
 }
 
 impl Wearing<'_> {
-    /// Wears over `distance` [m], every jump within `tolerance` [m].
+    /// Wears over `distance` \[m\], every jump within `tolerance` \[m\].
     ///
     /// # Errors
     /// What stops the block.
@@ -82,7 +82,7 @@ impl Wearing<'_> {
         Ok(Worn { depth, x: block.reduction().mesh.x.clone(), error, jumps })
     }
 
-    /// Wears over `distance` [m] in full, cycle by cycle, the profile set every `every` [s].
+    /// Wears over `distance` \[m\] in full, cycle by cycle, the profile set every `every` \[s\].
     ///
     /// # Errors
     /// What stops the block.
@@ -114,7 +114,7 @@ impl Wearing<'_> {
         Scenario::Slide(Slide::constant(self.speed, self.pressure * area))
     }
 
-    /// Mean depth per distance [m/m] of the settled vibration on a worn profile.
+    /// Mean depth per distance \[m/m\] of the settled vibration on a worn profile.
     fn rate(&self, block: &mut TreadBlock, depth: &[f64]) -> Result<Vec<f64>, Fault> {
         let x = block.reduction().mesh.x.clone();
         let scenario = self.scenario();
@@ -135,7 +135,7 @@ impl Wearing<'_> {
         Ok(sum.iter().map(|r| r / (count * self.speed)).collect())
     }
 
-    /// Growth of the depth [m/s] at the nodes, from the stations of the outputs.
+    /// Growth of the depth \[m/s\] at the nodes, from the stations of the outputs.
     fn instant(&self, o: &Outputs, x: &[f64]) -> Vec<f64> {
         let (first, last) = (x[0], x[x.len() - 1]);
         let at = |k: usize| {

@@ -11,7 +11,7 @@ use crate::drive::Pose;
 use crate::error::Fault;
 use crate::params::{NormalDrive, Params};
 
-/// Pressures of the paper's studies [Pa].
+/// Pressures of the paper's studies \[Pa\].
 const PRESSURES: [f64; 4] = [100e3, 250e3, 400e3, 600e3];
 
 /// Figure 2.
@@ -65,7 +65,7 @@ pub fn fig_2(compound: &Params, fineness: &Fineness, measured: &Grid) -> Result<
     })
 }
 
-/// Mean pressure over approach of a pressed block at rest: approach [m], pressure [Pa].
+/// Mean pressure over approach of a pressed block at rest: approach \[m\], pressure \[Pa\].
 fn approach(compound: &Params, fineness: &Fineness) -> Result<Vec<[f64; 2]>, Fault> {
     let mut params = compound.clone();
     (params.block.height, params.block.length) = (0.010, 0.015);
@@ -82,7 +82,7 @@ fn approach(compound: &Params, fineness: &Fineness) -> Result<Vec<[f64; 2]>, Fau
         .collect()
 }
 
-/// Stiffness per area [Pa/m] around a pressure.
+/// Stiffness per area \[Pa/m\] around a pressure.
 fn slope(curve: &[[f64; 2]], pressure: f64) -> f64 {
     let at = curve.partition_point(|c| c[1] < pressure).clamp(1, curve.len() - 1);
     (curve[at][1] - curve[at - 1][1]) / (curve[at][0] - curve[at - 1][0])

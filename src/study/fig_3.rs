@@ -14,13 +14,13 @@ use crate::contact::friction::{FrictionLaw, Law};
 use crate::error::Fault;
 use crate::params::Params;
 
-/// Sliding distance of the paper's worn block [m].
+/// Sliding distance of the paper's worn block \[m\].
 const DISTANCE: f64 = 25.0;
-/// Error of the depth allowed per jump [m].
+/// Error of the depth allowed per jump \[m\].
 const TOLERANCE: f64 = 4e-6;
 /// Brute force wears this much faster, so that a short distance shows a profile.
 const HASTE: f64 = 40.0;
-/// Distance of the brute force [m]; with [`HASTE`] worth 40 times as much.
+/// Distance of the brute force \[m\]; with [`HASTE`] worth 40 times as much.
 const CHECKED: f64 = 0.06;
 
 /// Figure 3.

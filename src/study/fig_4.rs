@@ -77,10 +77,10 @@ pub fn fig_4(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     })
 }
 
-/// Settled motion (displacement [m], velocity [m/s]) of a node.
+/// Settled motion (displacement \[m\], velocity \[m/s\]) of a node.
 type Cycle = Vec<[f64; 2]>;
 
-/// Limit cycles of the nodes up the run-in edge, with their heights [m], and their swings [m].
+/// Limit cycles of the nodes up the run-in edge, with their heights \[m\], and their swings \[m\].
 fn edge_cycles(run: &Run) -> Result<(Vec<(f64, Cycle)>, Vec<f64>), Fault> {
     const FINE_STEP: f64 = 5e-6;
     let load = run.pressure * run.params.block.length * run.params.block.width;
@@ -108,7 +108,7 @@ fn edge_cycles(run: &Run) -> Result<(Vec<(f64, Cycle)>, Vec<f64>), Fault> {
 }
 
 /// Corner nodes of the elements along the run-in edge from the road upward, without the clamped one,
-/// with their heights above the tread face [m].
+/// with their heights above the tread face \[m\].
 fn run_in_nodes(block: &TreadBlock) -> Vec<(usize, f64)> {
     let mesh = &block.reduction().mesh;
     let left = mesh.x[0];

@@ -7,7 +7,7 @@ use crate::error::{Fault, Problem};
 /// A quantity over pressure and sliding speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// Pressure [Pa], sliding speed [m/s], quantity (μ [-], or wear rate [kg/m³]).
+    /// Pressure \[Pa\], sliding speed \[m/s\], quantity (μ \[-\], or wear rate \[kg/m³\]).
     pub points: Vec<[f64; 3]>,
     /// Where it comes from, as a sentence for the report.
     pub origin: String,

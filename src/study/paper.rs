@@ -1,24 +1,24 @@
 //! What the paper says in numbers: Kröger and Moldenhauer, ISMA 2010.
 
-/// Sliding speeds of Table 1 [m/s].
+/// Sliding speeds of Table 1 \[m/s\].
 pub const SPEEDS: [f64; 7] = [0.080, 0.100, 0.200, 0.300, 0.400, 0.500, 0.600];
 
-/// Mean pressure of the paper's base case [Pa]; Table 1 states none, so it is taken for it, too.
+/// Mean pressure of the paper's base case \[Pa\]; Table 1 states none, so it is taken for it, too.
 pub const PRESSURE: f64 = 250e3;
 
 /// One cell of Table 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cell {
-    /// Stick-slip frequency [Hz].
+    /// Stick-slip frequency \[Hz\].
     Hz(f64),
-    /// The digits are lost; the frequency [Hz] lies between these two.
+    /// The digits are lost; the frequency \[Hz\] lies between these two.
     Between(f64, f64),
     /// No oscillation.
     Silent,
 }
 
 impl Cell {
-    /// The frequency [Hz] where it is legible, 0 where the block is silent.
+    /// The frequency \[Hz\] where it is legible, 0 where the block is silent.
     pub fn hz(self) -> Option<f64> {
         match self {
             Self::Hz(hz) => Some(hz),
@@ -33,11 +33,11 @@ impl Cell {
 pub struct Column {
     /// Short name, as the command line takes it.
     pub name: &'static str,
-    /// Height of the block [m].
+    /// Height of the block \[m\].
     pub height: f64,
-    /// Length of the block [m].
+    /// Length of the block \[m\].
     pub length: f64,
-    /// First eigenfrequency of the free block [Hz]; lost for the first column.
+    /// First eigenfrequency of the free block \[Hz\]; lost for the first column.
     pub f0: Option<f64>,
     /// Stick-slip at [`SPEEDS`].
     pub cells: [Cell; 7],

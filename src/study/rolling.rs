@@ -12,7 +12,7 @@ use crate::error::Fault;
 use crate::params::{NormalDrive, Params};
 use crate::scenario::{self, BeltPath, Inputs, Plan, Roll, Scenario};
 
-/// Distance of rows [s].
+/// Distance of rows \[s\].
 const STEP: f64 = 2e-5;
 
 /// One row of the passage.
@@ -79,7 +79,7 @@ fn passage(compound: &Params, fineness: &Fineness) -> Result<Passage, Fault> {
     Ok(Passage { rows, length: path.contact_length, along, up })
 }
 
-/// Height of the clamped face [m] at which the mean pressure is the base case's.
+/// Height of the clamped face \[m\] at which the mean pressure is the base case's.
 fn pressed_height(params: &Params, reductions: &Reductions) -> Result<f64, Fault> {
     let mut params = params.clone();
     params.drive.normal = NormalDrive::Load;
@@ -89,7 +89,7 @@ fn pressed_height(params: &Params, reductions: &Reductions) -> Result<f64, Fault
     Ok(block.outputs().carriage_z)
 }
 
-/// Nodes of the deformed block, road frame, relative to the belt's x [m].
+/// Nodes of the deformed block, road frame, relative to the belt's x \[m\].
 fn shape(block: &TreadBlock, pose: Pose) -> Vec<[f64; 2]> {
     let mesh = &block.reduction().mesh;
     let height = block.params().block.height;

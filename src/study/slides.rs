@@ -35,13 +35,13 @@ impl Reductions {
 /// What a sliding run is made of beside the block's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Road speed [m/s].
+    /// Road speed \[m/s\].
     pub speed: f64,
-    /// Mean pressure [Pa].
+    /// Mean pressure \[Pa\].
     pub pressure: f64,
-    /// Length of the run [s].
+    /// Length of the run \[s\].
     pub duration: f64,
-    /// Distance of the rows [s].
+    /// Distance of the rows \[s\].
     pub step: f64,
 }
 
@@ -50,14 +50,14 @@ pub struct Point {
 pub struct Observed {
     /// Metrics of the settled part.
     pub metrics: StickSlip,
-    /// Rate at which the vibration grows (or dies, negative) over the run [1/s].
+    /// Rate at which the vibration grows (or dies, negative) over the run \[1/s\].
     pub growth: f64,
 }
 
 /// Silence is certain, and the run over, when the velocity swings by less than this share of the
 /// road speed over [`WINDOW`].
 const DEAD: f64 = 2e-3;
-/// Time over which amplitudes are taken [s]; one period of the slowest stick-slip of the paper.
+/// Time over which amplitudes are taken \[s\]; one period of the slowest stick-slip of the paper.
 const WINDOW: f64 = 2e-3;
 
 /// Slides a block; ends early when all vibration has died.
@@ -91,7 +91,7 @@ pub fn observe(params: &Params, reductions: &Reductions, point: Point) -> Result
     Ok(Observed { metrics, growth: swings.growth() })
 }
 
-/// Share of the touching stations that slide slower than `bound` [m/s]: quasi-sticking creeps, so the
+/// Share of the touching stations that slide slower than `bound` \[m/s\]: quasi-sticking creeps, so the
 /// bound is a share of the road's speed, not the smoothing speed.
 pub fn sticking(outputs: &Outputs, bound: f64) -> f64 {
     let touching = || (0..STATIONS).filter(|k| outputs.pressure[*k] > 0.0);
@@ -130,7 +130,7 @@ impl Swings {
         self.swings.last().copied().unwrap_or(f64::INFINITY)
     }
 
-    /// Rate [1/s] of the logarithm of the swing, from the second window to the last.
+    /// Rate \[1/s\] of the logarithm of the swing, from the second window to the last.
     fn growth(&self) -> f64 {
         let (Some(first), Some(last)) = (self.swings.get(1), self.swings.last()) else {
             return 0.0;

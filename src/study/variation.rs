@@ -13,13 +13,13 @@ use crate::metrics::{stick_slip, Recorder, StickSlip};
 use crate::params::Params;
 use crate::scenario::{self, Inputs, Plan, Scenario, Slide};
 
-/// Height and length [m] of the base case: the only column of Table 1 with 2550 Hz at 300 mm/s.
+/// Height and length \[m\] of the base case: the only column of Table 1 with 2550 Hz at 300 mm/s.
 pub const BASE: (f64, f64) = (0.010, 0.045);
-/// Speed of the base case [m/s].
+/// Speed of the base case \[m/s\].
 pub const SPEED: f64 = 0.300;
-/// Length of the runs [s].
+/// Length of the runs \[s\].
 pub const DURATION: f64 = 20e-3;
-/// Distance of rows [s].
+/// Distance of rows \[s\].
 const STEP: f64 = 2e-5;
 
 /// A station sticks while it slides slower than this share of the road speed.
@@ -34,18 +34,18 @@ pub struct Run {
     pub value: f64,
     /// Parameters.
     pub params: Params,
-    /// Road speed [m/s].
+    /// Road speed \[m/s\].
     pub speed: f64,
-    /// Mean pressure [Pa].
+    /// Mean pressure \[Pa\].
     pub pressure: f64,
 }
 
 /// Traces of the edges and what they amount to.
 #[derive(Clone, Debug, Default)]
 pub struct Traces {
-    /// Time [s].
+    /// Time \[s\].
     pub time: Vec<f64>,
-    /// Run-in edge: displacement [m], velocity [m/s].
+    /// Run-in edge: displacement \[m\], velocity \[m/s\].
     pub run_in: Vec<[f64; 2]>,
     /// Run-out edge.
     pub run_out: Vec<[f64; 2]>,
@@ -103,13 +103,13 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// Peak-to-peak displacement of each run [m]; 0 where silent.
+    /// Peak-to-peak displacement of each run \[m\]; 0 where silent.
     pub fn amplitudes(&self) -> Vec<f64> {
         let of = |m: &StickSlip| if m.frequency > 0.0 { m.displacement_amplitude } else { 0.0 };
         self.runs.iter().map(|r| of(&r.2)).collect()
     }
 
-    /// Frequency of each run [Hz]; 0 where silent.
+    /// Frequency of each run \[Hz\]; 0 where silent.
     pub fn frequencies(&self) -> Vec<f64> {
         self.runs.iter().map(|r| r.2.frequency).collect()
     }

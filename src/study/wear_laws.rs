@@ -2,9 +2,9 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-/// Pressure [Pa] and speed [m/s] at which all laws wear alike.
+/// Pressure \[Pa\] and speed \[m/s\] at which all laws wear alike.
 pub const REFERENCE: (f64, f64) = (250e3, 0.3);
-/// Wear at the reference per load and distance at μ = 1 [m³/(N m)]: corundum paper, the size that
+/// Wear at the reference per load and distance at μ = 1 \[m³/(N m)\]: corundum paper, the size that
 /// wears about 0.5 mm over 25 m (physics notes 1.3).
 pub const SPECIFIC_WEAR: f64 = 0.08e-9;
 
@@ -23,8 +23,8 @@ pub struct WearLaw {
 
 /// The laws of figure 3. Archard (J. Appl. Phys. 24, 1953): volume per distance k F/H, friction plays
 /// no part. Fleischer (Schmierungstechnik 4, 1973): volume per friction work. Hofstetter (thesis, TU
-/// Wien 2004): a power of the friction power, here 1.3 [reconstructed]. Viswanath and Bellow (Wear
-/// 181, 1995): a product of powers of pressure and speed, here 1.5 and 0.3 [reconstructed]. The
+/// Wien 2004): a power of the friction power, here 1.3 \[reconstructed\]. Viswanath and Bellow (Wear
+/// 181, 1995): a product of powers of pressure and speed, here 1.5 and 0.3 \[reconstructed\]. The
 /// generalised law of the paper, η = k₁ μ p^k₂ |v|^k₃, has its exponents from a fit.
 pub fn published(generalised: [f64; 2]) -> [WearLaw; 5] {
     let [pressure, speed] = generalised;
@@ -38,7 +38,7 @@ pub fn published(generalised: [f64; 2]) -> [WearLaw; 5] {
 }
 
 impl WearLaw {
-    /// Depth worn per sliding distance [m/m]; `mu` is taken relative to `reference_mu`, so that all
+    /// Depth worn per sliding distance \[m/m\]; `mu` is taken relative to `reference_mu`, so that all
     /// laws agree at the reference.
     pub fn rate(&self, mu: f64, pressure: f64, speed: f64, reference_mu: f64) -> f64 {
         if pressure <= 0.0 {
@@ -56,15 +56,15 @@ impl WearLaw {
 /// A measured wear rate over the friction coefficient, η* = η/μ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measured {
-    /// Pressure [Pa].
+    /// Pressure \[Pa\].
     pub pressure: f64,
-    /// Sliding speed [m/s].
+    /// Sliding speed \[m/s\].
     pub speed: f64,
-    /// η* [kg/m³].
+    /// η* \[kg/m³\].
     pub rate: f64,
 }
 
-/// k₁ [kg/m³] at the reference, k₂ and k₃ of η* = k₁ (p/p₀)^k₂ (v/v₀)^k₃ by least squares of the
+/// k₁ \[kg/m³\] at the reference, k₂ and k₃ of η* = k₁ (p/p₀)^k₂ (v/v₀)^k₃ by least squares of the
 /// logarithms; `None` if the points do not determine them.
 pub fn fit(points: &[Measured]) -> Option<[f64; 3]> {
     let (mut normal, mut right) = (Matrix3::zeros(), Vector3::zeros());

@@ -29,7 +29,7 @@ pub const COLUMNS: [&str; 9] = [
 /// Traces of [`OUTPUT_NAMES`] over a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Traces {
-    /// Time [s].
+    /// Time \[s\].
     pub time: Vec<f64>,
     /// One per name.
     pub outputs: [Vec<f64>; OUTPUT_NAMES.len()],

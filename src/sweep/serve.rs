@@ -81,7 +81,7 @@ fn answer(plan: &Plan, line: &str) -> Option<Value> {
     fits.then(|| closed(Record { point, outcome }))
 }
 
-/// Communication points [s], as [`crate::scenario::run`] counts them.
+/// Communication points \[s\], as [`crate::scenario::run`] counts them.
 fn times(config: &Config) -> Vec<f64> {
     let (start, plan) = (config.scenario.start(), &config.plan);
     let end = start + plan.duration;

@@ -88,7 +88,7 @@ pub unsafe extern "C" fn fmi2GetStatus(
     unsafe { guarded(c, Call::GetStatus, |_| Err(unavailable("fmi2GetStatus", s))) }
 }
 
-/// fmi2LastSuccessfulTime: the time [s] up to which the solution is good.
+/// fmi2LastSuccessfulTime: the time \[s\] up to which the solution is good.
 #[no_mangle]
 pub unsafe extern "C" fn fmi2GetRealStatus(
     c: fmi2Component,

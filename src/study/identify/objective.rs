@@ -15,13 +15,13 @@ pub struct Fineness {
     pub along: [usize; 2],
     /// Elements over the height.
     pub up: usize,
-    /// Largest internal step [s].
+    /// Largest internal step \[s\].
     pub max_step: f64,
     /// Tolerance of the integrator.
     pub tolerance: f64,
-    /// Frequency bound [Hz].
+    /// Frequency bound \[Hz\].
     pub bound: f64,
-    /// Distance of rows [s].
+    /// Distance of rows \[s\].
     pub step: f64,
 }
 
@@ -61,7 +61,7 @@ impl Compared {
         self.column.cells[self.row]
     }
 
-    /// Model frequency [Hz], 0 where silent.
+    /// Model frequency \[Hz\], 0 where silent.
     pub fn hz(&self) -> f64 {
         self.observed.as_ref().map_or(0.0, |o| o.metrics.frequency)
     }
@@ -109,7 +109,7 @@ fn snap_ratio(hz: f64, paper: f64) -> f64 {
     }
 }
 
-/// Duration of the run of a cell [s]: the start settles, then eight periods or more are seen.
+/// Duration of the run of a cell \[s\]: the start settles, then eight periods or more are seen.
 fn duration(cell: Cell) -> f64 {
     match cell {
         Cell::Hz(hz) => (5e-3 + 9.0 / hz).max(10e-3),
@@ -148,7 +148,7 @@ pub fn compare(
         .collect()
 }
 
-/// E/ρ [m²/s²] at which the eigenfrequencies of the free blocks fit Table 1 best.
+/// E/ρ \[m²/s²\] at which the eigenfrequencies of the free blocks fit Table 1 best.
 ///
 /// # Errors
 /// What stops the reduction.

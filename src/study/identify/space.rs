@@ -17,7 +17,7 @@ pub struct Unknown {
 }
 
 impl Unknown {
-    /// SI value at `x` in [0, 1].
+    /// SI value at `x` in \[0, 1\].
     pub fn value(&self, x: f64) -> f64 {
         let x = x.clamp(0.0, 1.0);
         if self.logarithmic {
@@ -27,7 +27,7 @@ impl Unknown {
         }
     }
 
-    /// Where in [0, 1] an SI value lies.
+    /// Where in \[0, 1\] an SI value lies.
     pub fn place(&self, value: f64) -> f64 {
         let x = if self.logarithmic {
             (value / self.low).ln() / (self.high / self.low).ln()
