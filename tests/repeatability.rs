@@ -105,5 +105,12 @@ fn a_state_of_another_block_is_refused_and_changes_nothing() {
     let before = all(&first);
     assert!(!first.restore(&saved));
     assert!(!first.restore(&saved[..3]));
+    let mut own = Vec::new();
+    first.save(&mut own);
+    for at in [0, own.len() / 2, own.len() - 1] {
+        let mut spoilt = own.clone();
+        spoilt[at] = f64::NAN;
+        assert!(!first.restore(&spoilt), "number {at}");
+    }
     assert!(all(&first) == before);
 }

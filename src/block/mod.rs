@@ -224,8 +224,11 @@ impl TreadBlock {
     }
 
     /// Restores what [`Self::save`] wrote; `false`, with the block unchanged, if the count does not
-    /// fit.
+    /// fit or a number is not finite.
     pub fn restore(&mut self, from: &[f64]) -> bool {
+        if from.iter().any(|x| !x.is_finite()) {
+            return false;
+        }
         let mut state = self.state.clone();
         let Some((head, rest)) = from.split_at_checked(2) else { return false };
         let Some((motion, rest)) = rest.split_first_chunk() else { return false };

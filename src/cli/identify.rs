@@ -54,6 +54,10 @@ pub struct Arguments {
     /// Solve the local search as coarsely as the global one
     #[arg(long)]
     coarse: bool,
+    /// Solve the global search as finely as the local one: where a coarse table is silent and a fine one
+    /// is not
+    #[arg(long)]
+    fine: bool,
     /// Seed of the global search
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -136,6 +140,7 @@ fn task(arguments: &Arguments) -> Result<Task, Fault> {
         population: arguments.population,
         rounds: arguments.rounds,
         coarse: arguments.coarse,
+        fine: arguments.fine,
         seed: arguments.seed,
     })
 }

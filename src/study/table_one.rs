@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::identify::objective::{compare, Compared, Fineness};
+use super::identify::objective::{compare, Compared, Fineness, LENGTHEN};
 use super::paper::{Cell, Column, SPEEDS, TABLE_1};
 use super::plot::{svg, Panel, Series};
 use super::report::{Study, Verdict};
@@ -20,7 +20,7 @@ pub struct TableOne {
 impl TableOne {
     /// Simulates the columns with the parameters of `base`; only geometry and solver are changed.
     pub fn simulate(base: &Params, columns: &[Column], fineness: &Fineness) -> Self {
-        let mut cells = compare(base, columns, fineness, 1.5, &Reductions::default());
+        let mut cells = compare(base, columns, fineness, LENGTHEN, &Reductions::default());
         let place = |c: &Compared| TABLE_1.iter().position(|t| t.name == c.column.name);
         cells.sort_by_key(|c| (place(c), c.row));
         Self { cells }

@@ -28,6 +28,8 @@ pub struct Task {
     pub rounds: usize,
     /// Solve the local search coarsely, too.
     pub coarse: bool,
+    /// Solve the global search finely, too.
+    pub fine: bool,
     /// Seed of the global search.
     pub seed: u64,
 }
@@ -78,7 +80,8 @@ pub fn identify(
     };
     let mut x = places(&task.unknowns, &base);
     if task.evaluations > 0 {
-        x = global(task, &problem(Fineness::COARSE), x, &mut told);
+        let fineness = if task.fine { Fineness::FINE } else { Fineness::COARSE };
+        x = global(task, &problem(fineness), x, &mut told);
     }
     let fine = problem(if task.coarse { Fineness::COARSE } else { Fineness::FINE });
     let local = improve(&fine, x, task.rounds, |x, cost| {
