@@ -176,6 +176,9 @@ fn run_diagnose(
     let began = Instant::now();
     let shown = !quiet && std::io::stderr().is_terminal();
     let progress = |share: f64, what: &str| {
+        if !quiet && !shown {
+            eprintln!("{:5.1} s  {what}", began.elapsed().as_secs_f64());
+        }
         if shown {
             let gone = began.elapsed().as_secs_f64();
             let left = if share > 0.05 { gone * (1.0 - share) / share } else { f64::NAN };

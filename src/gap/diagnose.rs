@@ -7,18 +7,15 @@ use super::features;
 use super::fit::evaluate;
 use super::held_out;
 use super::hypotheses::{self, Fits, Hypothesis, Method};
-use super::problem::{loss, Bench, Residuals};
+use super::problem::{loss, Bench, Look, Residuals};
 use super::where_::{self, Cell};
 use crate::error::{Fault, Problem};
 use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
 
-/// Fits look at this much of every run \[s\]: before small errors of the frequency add up to another
-/// phase, the residuals follow the parameters without jumps; and it is several times cheaper.
-const FIT_HORIZON: f64 = 2.9e-3;
-/// Held-out runs are judged over their whole length.
-const FULL_HORIZON: f64 = 1.0;
+/// So many of the most probable causes are judged on the held-out runs.
+const JUDGED: usize = 7;
 
 /// How to go about it.
 #[derive(Clone, Copy, Debug)]
@@ -109,16 +106,23 @@ pub fn diagnose(
 ) -> Result<Diagnosis, Fault> {
     let began = Instant::now();
     let campaign = Campaign::load(folder)?;
-    let bench = Bench::new(&campaign, crate::effects::fit_specs(), FIT_HORIZON)?;
+    let mut bench = Bench::new(&campaign, crate::effects::fit_specs(), Look::Fit)?;
     let all: Vec<usize> = (0..bench.runs.len()).collect();
     let held = if settings.hold_out { held_out::choose(&bench.runs) } else { Vec::new() };
-    let seen = held_out::to_fit(&bench.runs, &held, FIT_HORIZON);
-    let fits = hypotheses::fit_all(&bench, &seen, settings.method, progress);
+    let seen = held_out::to_fit(&bench.runs, &held);
+    progress(0.0, "recalibrating the base model");
+    let mut start = vec![0.0; bench.base_size()];
+    if settings.method.recalibrate {
+        let mut first = Bench::new(&campaign, bench.specs, Look::Start)?;
+        start = hypotheses::first_guess(&mut first, &seen)?;
+    }
+    let fits = hypotheses::fit_all(&mut bench, start, &seen, settings.method, progress)?;
     let weighed = decide::weigh(&fits);
     let decision = decide::decide(&bench, &fits, &weighed);
     let judged = if held.is_empty() { all.clone() } else { held.clone() };
     progress(0.97, "judging the held-out runs");
-    let whole = Bench::new(&campaign, bench.specs, FULL_HORIZON)?;
+    let mut whole = Bench::new(&campaign, bench.specs, Look::Whole)?;
+    whole.measure_floor(&bench.params(&[], &fits.base.fit.x), &judged)?;
     let (gap, closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
     let base = at(&bench, &fits.base, &all);
     let cells = where_::map(&bench, &base);
@@ -167,8 +171,10 @@ fn how_far(
     let best = best_cause(weighed);
     let squares: Vec<Option<Vec<f64>>> = weighed
         .iter()
-        .map(|w| match w.cause {
+        .enumerate()
+        .map(|(rank, w)| match w.cause {
             Cause::None | Cause::Unknown => None,
+            _ if rank >= JUDGED => None,
             _ => Some(of(decide::fit_of(fits, &w.cause))),
         })
         .collect();

@@ -9,8 +9,12 @@ use super::spectrum::{amplitude, fundamental, hann, mean, power, Complex};
 
 /// Samples averaged in the onset.
 const BIN: usize = 4;
-/// Bins of the onset; 2.88 ms at 25 kHz.
+/// Bins of the onset of fast runs; 2.88 ms at 25 kHz.
 const BINS: usize = 18;
+/// Travel of the road [m] that the onset of slow runs covers: the first snap-out comes before.
+pub const TRAVEL: f64 = 0.5e-3;
+/// Samples from which a run is long enough for its settled part.
+const LONG: usize = 200;
 /// Snap-outs looked at.
 const SNAPS: usize = 2;
 /// Share of its travel that the edge must fall back to have snapped.
@@ -95,8 +99,10 @@ pub struct Feature {
     pub value: f64,
     /// Standard deviation from the noise of the channel.
     pub noise: f64,
-    /// Size of the quantity itself.
+    /// Size against which errors are judged before they are measured; grows where phases drift.
     pub scale: f64,
+    /// Size of the quantity itself.
+    pub size: f64,
 }
 
 /// A record, cut into what is compared.
@@ -121,10 +127,10 @@ pub fn of_run(plan: &Plan, spec: &RunSpec, run: usize, record: &Record) -> Vec<F
     cutter.snap();
     // After the start, in parts of about 7 ms; a short record is one part.
     let (first, last) = (40, record.time.len());
-    let parts = (last.saturating_sub(first) / PART).max(1);
-    let length = last.saturating_sub(first) / parts;
-    for part in 0..parts {
-        if length > 50 {
+    if last >= LONG {
+        let parts = ((last - first) / PART).max(1);
+        let length = (last - first) / parts;
+        for part in 0..parts {
             cutter.part(part, first + part * length, first + (part + 1) * length);
         }
     }
@@ -144,7 +150,13 @@ impl Cutter<'_> {
         [value, noise, scale]: [f64; 3],
     ) {
         let key = Key { run: self.run, channel, aspect, part };
-        self.out.push(Feature { key, value, noise, scale });
+        self.out.push(Feature { key, value, noise, scale, size: scale });
+    }
+
+    /// Bins of the onset of this run.
+    fn bins(&self) -> usize {
+        let travel = TRAVEL / self.spec.road_speed_m_s.abs().max(1e-3);
+        BINS.max((travel / (self.step * BIN as f64)) as usize).min(2 * BINS)
     }
 
     fn ringdown(&mut self) {
@@ -163,21 +175,21 @@ impl Cutter<'_> {
         for channel in 0..CHANNEL_COUNT {
             let Some(values) = self.record.channel[channel].as_ref() else { continue };
             let count = values.len();
-            let first = count.min(BIN * BINS);
+            let bins = self.bins();
+            let first = count.min(BIN * bins);
             let centre = values[..first].iter().sum::<f64>() / first as f64;
             let size = rms(values, centre, 0, first);
             let noise = self.noise(channel) / (BIN as f64).sqrt();
-            for bin in 0..BINS.min(count / BIN) {
+            for bin in 0..bins.min(count / BIN) {
                 let piece = &values[bin * BIN..(bin + 1) * BIN];
                 let value = piece.iter().sum::<f64>() / BIN as f64;
                 // An error of the frequency adds up to an error of the phase.
                 let late = (bin as f64 + 0.5) * BIN as f64 * self.step / 1e-3;
-                self.push(
-                    channel,
-                    Aspect::Onset,
-                    bin / 4,
-                    [value, noise, size * (1.0 + late * late).sqrt()],
-                );
+                let late = size * (1.0 + late * late).sqrt();
+                self.push(channel, Aspect::Onset, bin / 4, [value, noise, late]);
+                if let Some(feature) = self.out.last_mut() {
+                    feature.size = size;
+                }
             }
         }
     }
@@ -187,7 +199,7 @@ impl Cutter<'_> {
     fn snap(&mut self) {
         let Some(x) = self.record.channel[DISPLACEMENT].as_ref() else { return };
         let direction = self.spec.road_speed_m_s.signum();
-        let end = x.len().min(BIN * BINS);
+        let end = x.len().min(BIN * self.bins());
         let travel = |i: usize| direction * (x[i] - x[0]);
         let mut from = 0;
         for part in 0..SNAPS {

@@ -1,7 +1,7 @@
 //! How far the gap shrinks, on runs that no fit has seen.
 
 use super::campaign::{RunKind, RunSpec};
-use super::problem::{Bench, Residuals};
+use super::problem::{Bench, Look, Residuals};
 
 /// Residuals beyond count as this many standard deviations.
 const CAP: f64 = 40.0;
@@ -9,7 +9,7 @@ const CAP: f64 = 40.0;
 const SAMPLES: usize = 2000;
 
 /// Runs to be held out: plain sliding runs inside the range of speeds and pressures of the others,
-/// so that the fit keeps the corners, at most a quarter of the plain runs.
+/// so that the fit keeps the corners, at most two fifths of the plain runs.
 pub fn choose(runs: &[RunSpec]) -> Vec<usize> {
     let plain: Vec<usize> = (0..runs.len())
         .filter(|r| runs[*r].kind == RunKind::Sliding && runs[*r].dwell_s == 0.0)
@@ -36,7 +36,7 @@ pub fn choose(runs: &[RunSpec]) -> Vec<usize> {
             inside(|s| s.road_speed_m_s, *r) && inside(|s| s.mean_pressure_pa, *r) && !twin(*r)
         })
         .collect();
-    let most = (plain.len() / 4).max(1);
+    let most = (2 * plain.len() / 5).max(1);
     let step = (candidates.len() as f64 / most as f64).max(1.0);
     let mut chosen: Vec<usize> =
         (0..most).filter_map(|k| candidates.get((k as f64 * step) as usize).copied()).collect();
@@ -45,13 +45,13 @@ pub fn choose(runs: &[RunSpec]) -> Vec<usize> {
 }
 
 /// Runs to be fitted: all but the held-out ones, repetitions, and slow ramps that are as good as at
-/// rest within `horizon` \[s\].
-pub fn to_fit(runs: &[RunSpec], held_out: &[usize], horizon: f64) -> Vec<usize> {
+/// rest within what a fit looks at.
+pub fn to_fit(runs: &[RunSpec], held_out: &[usize]) -> Vec<usize> {
     let same = |a: &RunSpec, b: &RunSpec| {
         RunSpec { file: String::new(), ..a.clone() } == RunSpec { file: String::new(), ..b.clone() }
     };
     let slow = |r: &RunSpec| {
-        let gain = r.road_speed_end_m_s.unwrap_or(0.0).abs() * horizon / r.duration_s;
+        let gain = r.road_speed_end_m_s.unwrap_or(0.0).abs() * Look::Fit.horizon(r) / r.duration_s;
         r.kind == RunKind::SpeedRamp && r.road_speed_m_s.abs() + gain < 0.15
     };
     (0..runs.len())

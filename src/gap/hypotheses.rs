@@ -3,6 +3,7 @@
 use super::campaign::RunKind;
 use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
 use super::problem::{Bench, Choice};
+use crate::error::Fault;
 use nalgebra::DMatrix;
 
 /// Whitened severities from which an effect is started.
@@ -10,9 +11,9 @@ const STARTS: [f64; 2] = [-1.2, 0.3];
 /// Effects of which all forms are tried.
 const FAMILIES: usize = 3;
 /// Effects that are refined with Jacobians of their own.
-const REFINED: usize = 2;
+const REFINED: usize = 3;
 /// Effects of which pairs are made.
-const PAIRED: usize = 2;
+const PAIRED: usize = 3;
 
 /// A fitted hypothesis.
 #[derive(Clone, Debug)]
@@ -59,11 +60,11 @@ const fn effort(steps: usize, refresh: usize, heat: f64, onset_parts: Option<usi
     Effort { steps, refresh, view: View { heat, onset_parts } }
 }
 
-/// From the datasheet to the optimum of the base model: the first two milliseconds, then all.
+/// From the datasheet towards the optimum of the base model, on the first millisecond.
 const FAR: [Effort; 3] =
-    [effort(3, 1, 5.0, Some(2)), effort(1, 1, 4.0, None), effort(2, 2, 1.0, None)];
+    [effort(2, 1, 4.0, None), effort(2, 1, 4.0, None), effort(4, 2, 1.0, None)];
 /// Once more from another place.
-const HOME: [Effort; 2] = [effort(2, 1, 4.0, None), effort(3, 2, 1.0, None)];
+const HOME: [Effort; 2] = [effort(1, 1, 3.0, None), effort(4, 2, 1.0, None)];
 /// Places looked at where the optimum is not good.
 const DRAWS: usize = 32;
 /// Level from which on an optimum is good.
@@ -71,39 +72,43 @@ const SETTLED: f64 = 0.8;
 /// From the base model's optimum to that of an effect, with an inherited Jacobian.
 const NEAR: [Effort; 2] = [effort(2, 9, 3.0, None), effort(2, 9, 1.0, None)];
 /// With Jacobians of its own.
-pub const FINE: [Effort; 1] = [effort(3, 2, 1.0, None)];
+pub const FINE: [Effort; 1] = [effort(4, 4, 1.0, None)];
 /// Once more.
 const AGAIN: Effort = effort(2, 9, 1.0, None);
 
 /// Fits everything on the runs `of`; `progress` is told the share done.
+///
+/// # Errors
+/// What stops the reduction of the block.
 pub fn fit_all(
-    bench: &Bench,
+    bench: &mut Bench,
+    start: Vec<f64>,
     of: &[usize],
     method: Method,
     progress: &(dyn Fn(f64, &str) + Sync),
-) -> Fits {
-    progress(0.0, "recalibrating the base model");
-    let start = vec![0.0; bench.base_size()];
-    let mut base = if method.recalibrate {
-        let struck = struck(bench, start, of);
-        recalibrate(bench, evaluate(bench, &[], struck, of), of)
-    } else {
-        evaluate(bench, &[], start, of)
-    };
-    let all: Vec<usize> = (0..base.x.len()).collect();
-    let jacobian = columns(bench, &base, &all, of);
-    base.jacobian = Some(jacobian);
+) -> Result<Fits, Fault> {
+    progress(0.1, "recalibrating the base model");
+    let x = start;
+    bench.measure_floor(&bench.params(&[], &x), of)?;
+    let bench: &Bench = bench;
+    let mut base = evaluate(bench, &[], x, of);
+    if method.recalibrate {
+        base = recalibrate(bench, base, of);
+    }
+    let left = |fit: &Fit| format!("{:.2} of the floor left", fit.objective / bench.total_weight(of));
+    progress(0.3, &format!("recalibrated: {}", left(&base)));
+    base.jacobian = Some(full_jacobian(bench, &base, of));
     let mut singles = Vec::new();
     let mut response = Vec::new();
     for (effect, spec) in bench.specs.iter().enumerate() {
-        let done = 0.15 + 0.30 * effect as f64 / bench.specs.len() as f64;
+        let done = 0.35 + 0.20 * effect as f64 / bench.specs.len() as f64;
         progress(done, &format!("fitting {}", spec.effect));
         let (found, tried) = start_effect(bench, &base, Choice { effect, form: 0 }, of, method);
         response.push(tried);
         singles.push(level(bench, found, of));
     }
     if method.families {
-        progress(0.45, "other forms of the best effects");
+        progress(0.55, "other forms of the best effects");
         for at in ranked(&singles).into_iter().take(FAMILIES) {
             let effect = singles[at].added[0].effect;
             for form in 1..bench.specs[effect].forms.len() {
@@ -116,7 +121,7 @@ pub fn fit_all(
     }
     let order = ranked(&singles);
     for (k, at) in order.iter().take(REFINED).enumerate() {
-        progress(0.5 + 0.25 * k as f64 / REFINED as f64, "refining the best effects");
+        progress(0.6 + 0.15 * k as f64 / REFINED as f64, "refining the best effects");
         if method.recalibrate {
             let mut fit = approach(bench, singles[*at].fit.clone(), of, &FINE);
             fit.jacobian = Some(full_jacobian(bench, &fit, of));
@@ -128,15 +133,29 @@ pub fn fit_all(
     if method.equal_effort && method.recalibrate {
         progress(0.75, "the base model once more, from what the effects found");
         base = again(bench, base, &singles, &order, of);
+        progress(0.8, &format!("recalibrated: {}", left(&base)));
     }
     let pairs = pairs(bench, &base, &singles, of, method, progress);
     progress(1.0, "fitted");
-    Fits { base: level(bench, base, of), singles, pairs, response }
+    Ok(Fits { base: level(bench, base, of), singles, pairs, response })
+}
+
+/// The base model's parameters from the free block and the first millisecond: `bench` looks at
+/// no more.
+///
+/// # Errors
+/// What stops the reduction of the block.
+pub fn first_guess(bench: &mut Bench, of: &[usize]) -> Result<Vec<f64>, Fault> {
+    let struck = struck(bench, vec![0.0; bench.base_size()], of);
+    let first = approach(bench, evaluate(bench, &[], struck, of), of, &FAR[..1]);
+    bench.measure_floor(&bench.params(&[], &first.x), of)?;
+    let again = evaluate(bench, &[], first.x, of);
+    Ok(approach(bench, again, of, &FAR[1..]).x)
 }
 
 /// The base model's optimum from `start`.
 pub fn recalibrate(bench: &Bench, start: Fit, of: &[usize]) -> Fit {
-    let mut best = approach(bench, start, of, &FAR);
+    let mut best = approach(bench, start, of, &HOME);
     for heat in [4.0, 2.0] {
         if best.objective < SETTLED * bench.total_weight(of) {
             break;
@@ -279,7 +298,7 @@ fn pairs(
     let mut best: Vec<usize> = order.into_iter().take(PAIRED).collect();
     best.retain(|at| singles[*at].fit.objective < base.objective);
     let mut out = Vec::new();
-    let mut done = 0.8;
+    let mut done = 0.82;
     for (i, first) in best.iter().enumerate() {
         for second in &best[i + 1..] {
             // Two fits that need each other start from the better one.

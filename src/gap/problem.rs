@@ -1,9 +1,9 @@
 //! The fitting problem: whitened parameters in, weighted residuals of the data vector out.
 
-use super::campaign::{Campaign, Plan, RunSpec};
+use super::campaign::{Campaign, Plan, RunKind, RunSpec};
 use super::features::{self, Aspect, Feature, Key};
 use super::floor;
-use super::simulate::{nominal, set, Simulator, DATASHEET};
+use super::simulate::{nominal, set, Simulator, DATASHEET, FINE};
 use crate::effects::fit::{FitSpec, Spread};
 use crate::error::Fault;
 use crate::params::Params;
@@ -72,6 +72,37 @@ impl Coordinate {
     }
 }
 
+/// How much of every run is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Look {
+    /// Up to the first snap-out: what follows the parameters without jumps.
+    Start,
+    /// Enough to fit: the first snap-outs of all runs.
+    Fit,
+    /// All.
+    Whole,
+}
+
+impl Look {
+    /// Records are compared up to this time [s].
+    pub fn horizon(self, run: &RunSpec) -> f64 {
+        let speed = run.road_speed_m_s.abs();
+        match self {
+            Self::Whole => run.duration_s,
+            _ if run.kind == RunKind::Ringdown => run.duration_s,
+            Self::Start => FIRST.max(0.5 * features::TRAVEL / speed.max(1e-3)).min(START),
+            Self::Fit => START.max(features::TRAVEL / speed.max(1e-3)).min(SLOW),
+        }
+    }
+}
+
+/// Length of what is looked at first [s].
+const FIRST: f64 = 1.3e-3;
+/// Length of the fitted start of runs [s].
+const START: f64 = 2.9e-3;
+/// Longest fitted start, of slow runs [s].
+const SLOW: f64 = 5.8e-3;
+
 /// A campaign's data vector with all that is needed to predict it.
 #[derive(Debug)]
 pub struct Bench {
@@ -80,8 +111,8 @@ pub struct Bench {
     /// Runs in the order of the data vector.
     pub runs: Vec<RunSpec>,
     simulator: Simulator,
-    /// Records are compared up to this time \[s\].
-    horizon: f64,
+    /// How much of the runs is compared.
+    look: Look,
     /// Measured features, run after run.
     pub measured: Vec<Vec<Feature>>,
     /// 1/σ per feature.
@@ -98,14 +129,14 @@ pub struct Bench {
 pub type Residuals = Vec<Vec<f64>>;
 
 impl Bench {
-    /// Cuts the campaign's data up to `horizon` \[s\] into features.
+    /// Cuts the campaign's data, as far as `look` goes, into features.
     ///
     /// # Errors
     /// What stops the reduction of the block.
     pub fn new(
         campaign: &Campaign,
         specs: &'static [FitSpec],
-        horizon: f64,
+        look: Look,
     ) -> Result<Self, Fault> {
         let plan = campaign.plan.clone();
         let runs: Vec<RunSpec> = campaign.runs.iter().map(|r| r.spec.clone()).collect();
@@ -113,7 +144,10 @@ impl Bench {
             .runs
             .iter()
             .enumerate()
-            .map(|(i, run)| features::of_run(&plan, &run.spec, i, &run.record.until(horizon)))
+            .map(|(i, run)| {
+                let seen = run.record.until(look.horizon(&run.spec));
+                features::of_run(&plan, &run.spec, i, &seen)
+            })
             .collect();
         let sigma = |f: &Feature| 1.0 / floor::uncertainty(f);
         let inverse = measured.iter().map(|run| run.iter().map(sigma).collect()).collect();
@@ -133,7 +167,7 @@ impl Bench {
             plan,
             runs,
             simulator,
-            horizon,
+            look,
             measured,
             inverse,
             weight,
@@ -195,21 +229,58 @@ impl Bench {
         out
     }
 
+    /// Values of the features of a run that `simulator` predicts.
+    fn predicted(
+        &self,
+        simulator: &Simulator,
+        params: &Params,
+        spec: &RunSpec,
+        run: usize,
+    ) -> Result<Vec<f64>, Fault> {
+        let mut record = simulator.run(params, spec, self.look.horizon(spec))?;
+        for (channel, slot) in record.channel.iter_mut().enumerate() {
+            if !self.measured[run].iter().any(|f| f.key.channel == channel) {
+                *slot = None;
+            }
+        }
+        let features = features::of_run(&self.plan, spec, run, &record);
+        Ok(features.iter().map(|f| f.value).collect())
+    }
+
+    /// Measures what mesh and step of the fits cost, feature by feature, at `params` on the runs
+    /// `of`, and takes it as their uncertainty from now on.
+    ///
+    /// # Errors
+    /// What stops the reduction.
+    pub fn measure_floor(&mut self, params: &Params, of: &[usize]) -> Result<(), Fault> {
+        let fine = Simulator::cut(&self.plan, FINE)?;
+        let found: Vec<Option<Vec<f64>>> = of
+            .par_iter()
+            .map(|r| {
+                let spec = &self.runs[*r];
+                let pair = [&self.simulator, &fine].map(|s| self.predicted(s, params, spec, *r).ok());
+                let [Some(coarse), Some(fine)] = pair else { return None };
+                let same = coarse.len() == fine.len() && fine.len() == self.measured[*r].len();
+                same.then(|| coarse.iter().zip(&fine).map(|(a, b)| a - b).collect())
+            })
+            .collect();
+        for (r, errors) in of.iter().zip(found) {
+            let Some(errors) = errors else { continue };
+            let sigma = floor::measured(&self.measured[*r], &errors);
+            self.inverse[*r] = sigma.into_iter().map(|s| 1.0 / s).collect();
+        }
+        Ok(())
+    }
+
     fn residual(&self, params: &Params, run: usize) -> Vec<f64> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
         let spec = &self.runs[run];
         let measured = &self.measured[run];
-        let Ok(mut record) = self.simulator.run(params, spec, self.horizon) else {
+        let Ok(predicted) = self.predicted(&self.simulator, params, spec, run) else {
             return vec![FAILED; measured.len()];
         };
-        for (channel, slot) in record.channel.iter_mut().enumerate() {
-            if !measured.iter().any(|f| f.key.channel == channel) {
-                *slot = None;
-            }
-        }
-        let predicted = features::of_run(&self.plan, spec, run, &record);
         let pairs = predicted.iter().zip(measured).zip(&self.inverse[run]);
-        let residuals: Vec<f64> = pairs.map(|((p, m), w)| (p.value - m.value) * w).collect();
+        let residuals: Vec<f64> = pairs.map(|((p, m), w)| (p - m.value) * w).collect();
         if residuals.len() == measured.len() && residuals.iter().all(|r| r.is_finite()) {
             residuals
         } else {

@@ -178,6 +178,7 @@ fn overlays(d: &Diagnosis, out: &mut String) {
         .par_iter()
         .map(|run| models.iter().map(|m| d.bench.simulate(m, &run.spec).ok()).collect())
         .collect();
+    // Over their whole length: the eye sees drifts of phase that the fit does not look at.
     for (run, records) in d.campaign.runs.iter().zip(&simulated) {
         let mut all = vec![&run.record];
         all.extend(records.iter().flatten());

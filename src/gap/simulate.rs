@@ -25,13 +25,19 @@ pub const DATASHEET: [(&str, &str); 12] = [
     ("friction_reference_pressure_pa", "friction.reference_pressure"),
 ];
 
-/// Elements along and up.
-const FIT_ELEMENTS: (usize, usize) = (6, 4);
-/// Fixed-interface modes up to this frequency \[Hz\].
-const FIT_BOUND: f64 = 14e3;
-/// Tolerance of the integrator.
-const FIT_TOLERANCE: f64 = 3e-3;
-/// Height above the road at which the struck block hangs \[m\]; the measured approach is minus this.
+/// How finely the block is cut: elements along and up, highest mode [Hz], tolerance of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Fineness {
+    elements: (usize, usize),
+    bound: f64,
+    tolerance: f64,
+}
+
+/// For the fits: several times faster than the default.
+pub const FIT: Fineness = Fineness { elements: (6, 4), bound: 14e3, tolerance: 3e-3 };
+/// What the fits' error is measured against.
+pub const FINE: Fineness = Fineness { elements: (10, 6), bound: 24e3, tolerance: 1e-3 };
+/// Height above the road at which the struck block hangs [m]; the measured approach is minus this.
 const HANGING: f64 = 1.0;
 /// Speed of the blow at the tread face \[m/s\].
 const BLOW: f64 = 0.3;
@@ -50,11 +56,7 @@ pub fn nominal(plan: &Plan) -> Params {
     params.carriage.mass = plan.rig.load_carriage_mass_kg;
     params.carriage.damping = plan.rig.load_carriage_damping_n_s_m;
     params.wear.coefficient = 0.0;
-    // Enough for the floor of the comparison, and several times faster than the default.
-    params.solver.elements_along = FIT_ELEMENTS.0;
-    params.solver.elements_up = FIT_ELEMENTS.1;
-    params.solver.frequency_bound = FIT_BOUND;
-    params.solver.tolerance = FIT_TOLERANCE;
+    cut(&mut params, FIT);
     for (key, name) in DATASHEET {
         if let Some(datum) = plan.nominal.get(key) {
             set(&mut params, name, datum.value);
@@ -63,11 +65,20 @@ pub fn nominal(plan: &Plan) -> Params {
     params
 }
 
+/// Sets how finely the block is cut.
+fn cut(params: &mut Params, fineness: Fineness) {
+    params.solver.elements_along = fineness.elements.0;
+    params.solver.elements_up = fineness.elements.1;
+    params.solver.frequency_bound = fineness.bound;
+    params.solver.tolerance = fineness.tolerance;
+}
+
 /// Simulates runs of one campaign; the reduction is made once.
 #[derive(Clone, Debug)]
 pub struct Simulator {
     plan: Plan,
     reduction: Arc<Reduction>,
+    fineness: Fineness,
 }
 
 impl Simulator {
@@ -76,8 +87,18 @@ impl Simulator {
     /// # Errors
     /// What stops the reduction.
     pub fn new(plan: &Plan) -> Result<Self, Fault> {
-        let reduction = Arc::new(Shape::of(&nominal(plan)).reduce()?);
-        Ok(Self { plan: plan.clone(), reduction })
+        Self::cut(plan, FIT)
+    }
+
+    /// The same, cut as finely as `fineness` says.
+    ///
+    /// # Errors
+    /// What stops the reduction.
+    pub fn cut(plan: &Plan, fineness: Fineness) -> Result<Self, Fault> {
+        let mut params = nominal(plan);
+        cut(&mut params, fineness);
+        let reduction = Arc::new(Shape::of(&params).reduce()?);
+        Ok(Self { plan: plan.clone(), reduction, fineness })
     }
 
     /// The run as the rig would have measured it up to `until` \[s\], without noise, at the campaign's
@@ -88,6 +109,7 @@ impl Simulator {
     pub fn run(&self, params: &Params, spec: &RunSpec, until: f64) -> Result<Record, Fault> {
         let until = until.min(spec.duration_s);
         let mut params = params.clone();
+        cut(&mut params, self.fineness);
         params.drive.normal = match spec.kind {
             RunKind::Ringdown => NormalDrive::Trajectory,
             _ => NormalDrive::Load,
@@ -122,16 +144,13 @@ impl Simulator {
         sampler: &mut Sampler,
     ) -> Result<(), Fault> {
         let step = 1.0 / self.plan.sampling_rate;
-        // Rest changes nothing without a memory in the rubber or in the friction.
-        let rests = !block.params().effect.eq(&Params::default().effect);
-        let dwell = if rests { (spec.dwell_s / step).round() * step } else { 0.0 };
-        let slide = motion(&self.plan, spec, dwell);
-        let plan = scenario::Plan { step, duration: until + dwell, inputs: Inputs::Exact };
-        scenario::run(block, &Scenario::Slide(slide), &plan, |t, block| {
-            let t = t - dwell;
-            if t > -0.5 * step {
-                sampler.push(t, block);
-            }
+        let scenario = Scenario::Slide(motion(&self.plan, spec, 0.0));
+        let plan = scenario::Plan { step, duration: until, inputs: Inputs::Exact };
+        block.initialize(scenario.start(), scenario.pose(scenario.start()))?;
+        // The block is settled: a rest before the road starts only ages and cools the contact.
+        block.rest(spec.dwell_s);
+        scenario::go_on(block, &scenario, &plan, |t, block| {
+            sampler.push(t, block);
             Ok(())
         })
     }
