@@ -13,14 +13,26 @@ pub const PRIOR_NONE: f64 = 2.5;
 /// Logarithm of the odds of "unknown" before the data.
 pub const PRIOR_UNKNOWN: f64 = -1.0;
 /// Logarithm of the odds of two effects at once before the data.
-pub const PRIOR_PAIR: f64 = -2.5;
+pub const PRIOR_PAIR: f64 = -5.0;
 /// An unknown cause is taken to leave this share of ln(G²) that the recalibrated model leaves.
-pub const UNKNOWN_LEAVES: f64 = 0.7;
+pub const UNKNOWN_LEAVES: f64 = 0.85;
 /// G² up to which a recalibrated model has no gap worth a name.
-pub const NO_GAP: f64 = 1.4;
+pub const NO_GAP: f64 = 0.9;
 /// Probability from which an effect is named.
 pub const NAME_FROM: f64 = 0.7;
 /// Probability that a class of effects must hold together.
 pub const CLASS_FROM: f64 = 0.9;
 /// Most effects that a class may hold.
 pub const CLASS_SIZE: usize = 3;
+/// Nats against a cause for every rule of the data that it contradicts.
+pub const CONTRADICTION: f64 = 9.0;
+/// Nats against "unknown" where a rule is broken that effects of the list break.
+pub const KNOWN_BREAKER: f64 = 4.0;
+/// Level up to which the recalibrated model alone is good; both campaigns without an effect in
+/// `open/` stay below 0.5.
+pub const GOOD: f64 = 1.2;
+/// Nats against "none" per unit of ln(level) above [`GOOD`].
+pub const INADEQUATE: f64 = 5.0;
+/// Share of its level that a road texture is held to: its profile is not known, a tilt's and a worn
+/// edge's are.
+pub const TEXTURE_ALLOWANCE: f64 = 0.75;

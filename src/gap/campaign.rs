@@ -118,6 +118,8 @@ pub struct Record {
     pub time: Vec<f64>,
     /// Channels; `None` where a channel is missing or unusable.
     pub channel: [Option<Vec<f64>>; CHANNEL_COUNT],
+    /// Step of the measured time column over that of the sampling rate; 0 where nothing was measured.
+    pub clock: f64,
 }
 
 impl Record {
@@ -128,6 +130,7 @@ impl Record {
         Self {
             time: cut(&self.time),
             channel: std::array::from_fn(|c| self.channel[c].as_ref().map(cut)),
+            clock: self.clock,
         }
     }
 }

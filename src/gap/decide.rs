@@ -2,10 +2,12 @@
 
 use super::calibration::{
     BLUR, CLASS_FROM, CLASS_SIZE, NAME_FROM, NO_GAP, PRIOR_NONE, PRIOR_PAIR, PRIOR_UNKNOWN,
-    SHARPNESS, UNKNOWN_LEAVES,
+    CONTRADICTION, GOOD, INADEQUATE, KNOWN_BREAKER, SHARPNESS, TEXTURE_ALLOWANCE, UNKNOWN_LEAVES,
 };
 use super::hypotheses::{Fits, Hypothesis};
 use super::problem::Bench;
+use super::symmetry;
+use crate::effects::fit_specs;
 
 /// What a probability belongs to.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,17 +85,34 @@ pub fn evidence(level: f64) -> f64 {
     -SHARPNESS * (level + BLUR).ln()
 }
 
+/// Share of the level that an effect answers for: a road is not the sine of its fit.
+fn allowed(single: &Hypothesis) -> f64 {
+    let textured = |c: &super::problem::Choice| fit_specs()[c.effect].effect == "road_texture";
+    if single.added.iter().any(textured) {
+        TEXTURE_ALLOWANCE
+    } else {
+        1.0
+    }
+}
+
 /// Probabilities of all causes, most probable first.
 pub fn weigh(fits: &Fits) -> Vec<Weighed> {
     let base = fits.base.level;
-    let mut nats = vec![(Cause::None, evidence(base) + PRIOR_NONE)];
+    let against = |h: &Hypothesis| {
+        let effects: Vec<usize> = h.added.iter().map(|c| c.effect).collect();
+        CONTRADICTION * symmetry::contradictions(&fits.findings, &effects) as f64
+    };
+    let inadequate = INADEQUATE * (base / GOOD).ln().max(0.0);
+    let mut nats =
+        vec![(Cause::None, evidence(base) + PRIOR_NONE - inadequate - against(&fits.base))];
+    let known = KNOWN_BREAKER * symmetry::known(&fits.findings) as f64;
     let left = (base + BLUR).ln().max(0.0) * UNKNOWN_LEAVES;
-    nats.push((Cause::Unknown, -SHARPNESS * left + PRIOR_UNKNOWN));
+    nats.push((Cause::Unknown, -SHARPNESS * left + PRIOR_UNKNOWN - known));
     for (k, single) in fits.singles.iter().enumerate() {
-        nats.push((Cause::Single(k), evidence(single.level)));
+        nats.push((Cause::Single(k), evidence(allowed(single) * single.level) - against(single)));
     }
     for (k, pair) in fits.pairs.iter().enumerate() {
-        nats.push((Cause::Pair(k), evidence(pair.level) + PRIOR_PAIR));
+        nats.push((Cause::Pair(k), evidence(pair.level) + PRIOR_PAIR - against(pair)));
     }
     let highest = nats.iter().map(|n| n.1).fold(f64::NEG_INFINITY, f64::max);
     let total: f64 = nats.iter().map(|n| (n.1 - highest).exp()).sum();
@@ -207,7 +226,7 @@ mod tests {
 
     fn fits(base: f64, singles: &[f64]) -> Fits {
         let singles = singles.iter().map(|l| at(*l)).collect();
-        Fits { base: at(base), singles, pairs: Vec::new(), response: Vec::new() }
+        Fits { base: at(base), singles, pairs: Vec::new(), response: Vec::new(), findings: Vec::new() }
     }
 
     #[test]

@@ -6,8 +6,9 @@ use super::decide::{self, Cause, Decision, Kind, Weighed};
 use super::features;
 use super::fit::evaluate;
 use super::held_out;
-use super::hypotheses::{self, Fits, Hypothesis, Method};
+use super::hypotheses::{self, Fits, Guess, Hypothesis, Method};
 use super::problem::{loss, Bench, Look, Residuals};
+use super::symmetry;
 use super::where_::{self, Cell};
 use crate::error::{Fault, Problem};
 use rayon::prelude::*;
@@ -15,7 +16,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// So many of the most probable causes are judged on the held-out runs.
-const JUDGED: usize = 7;
+const JUDGED: usize = 5;
 
 /// How to go about it.
 #[derive(Clone, Copy, Debug)]
@@ -111,12 +112,14 @@ pub fn diagnose(
     let held = if settings.hold_out { held_out::choose(&bench.runs) } else { Vec::new() };
     let seen = held_out::to_fit(&bench.runs, &held);
     progress(0.0, "recalibrating the base model");
-    let mut start = vec![0.0; bench.base_size()];
+    let findings = symmetry::findings(&campaign);
+    let mut guess =
+        Guess { base: vec![0.0; bench.base_size()], level: 1.0, effects: Vec::new(), findings: findings.clone() };
     if settings.method.recalibrate {
         let mut first = Bench::new(&campaign, bench.specs, Look::Start)?;
-        start = hypotheses::first_guess(&mut first, &seen)?;
+        guess = hypotheses::first_guess(&mut first, findings, &seen, settings.method, progress)?;
     }
-    let fits = hypotheses::fit_all(&mut bench, start, &seen, settings.method, progress)?;
+    let fits = hypotheses::fit_all(&mut bench, &guess, &seen, settings.method, progress)?;
     let weighed = decide::weigh(&fits);
     let decision = decide::decide(&bench, &fits, &weighed);
     let judged = if held.is_empty() { all.clone() } else { held.clone() };

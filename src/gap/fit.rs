@@ -10,7 +10,7 @@ const DIFFERENCE: f64 = 0.12;
 /// Largest change of a whitened parameter per step.
 const LARGEST_STEP: f64 = 1.2;
 /// Farthest a parameter may go from the centre of its prior.
-const FARTHEST: f64 = 4.0;
+const FARTHEST: f64 = 3.5;
 
 /// A point with its residuals.
 #[derive(Clone, Debug)]
@@ -89,7 +89,7 @@ pub fn explore(bench: &Bench, fit: Fit, of: &[usize], draws: usize, view: View) 
     let (matrix, _) = normal(&jacobian, &r, &w, &fit.x);
     let Some(factor) = matrix.cholesky() else { return fit };
     let upper = factor.l().transpose();
-    let mut noise = Noise(0x5eed_0123_4567_89ab);
+    let mut noise = Noise::new(0);
     let points: Vec<Vec<f64>> = (0..draws)
         .map(|k| {
             let z = DVector::from_fn(size, |_, _| noise.normal());
@@ -117,18 +117,28 @@ pub fn explore(bench: &Bench, fit: Fit, of: &[usize], draws: usize, view: View) 
 /// How far the draws of [`explore`] go, in standard deviations.
 const REACH: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
 
-/// Deterministic normal numbers.
-struct Noise(u64);
+/// Deterministic random numbers.
+#[derive(Clone, Debug)]
+pub struct Noise(u64);
 
 impl Noise {
-    fn uniform(&mut self) -> f64 {
+    /// A sequence of its own for every seed.
+    pub fn new(seed: u64) -> Self {
+        let mut noise = Self((seed ^ 0x5eed_0123_4567_89ab).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        (0..8).for_each(|_| _ = noise.uniform());
+        noise
+    }
+
+    /// Uniform in (0, 1).
+    pub fn uniform(&mut self) -> f64 {
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
         ((self.0 >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
     }
 
-    fn normal(&mut self) -> f64 {
+    /// Standard normal.
+    pub fn normal(&mut self) -> f64 {
         (-2.0 * self.uniform().ln()).sqrt() * (std::f64::consts::TAU * self.uniform()).cos()
     }
 }

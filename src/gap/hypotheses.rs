@@ -1,8 +1,11 @@
 //! Which effects are asked, and how well each explains the data after the same effort.
 
 use super::campaign::RunKind;
-use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
+use super::fit::{
+    self, approach, columns, evaluate, explore, improve, Effort, Fit, Noise, View,
+};
 use super::problem::{Bench, Choice};
+use super::symmetry::{self, Finding};
 use crate::error::Fault;
 use nalgebra::DMatrix;
 
@@ -12,7 +15,9 @@ const STARTS: [f64; 2] = [-1.2, 0.3];
 const FAMILIES: usize = 3;
 /// Effects that are refined with Jacobians of their own.
 const REFINED: usize = 3;
-/// Effects of which pairs are made.
+/// Level of a single effect below which there is nothing left for a second one.
+const LITTLE: f64 = 1.2;
+/// Pairs that are kept.
 const PAIRED: usize = 3;
 
 /// A fitted hypothesis.
@@ -38,7 +43,25 @@ pub struct Fits {
     /// Smallest whitened response of every effect: severity that was tried, and weighted loss that
     /// it causes.
     pub response: Vec<(f64, f64)>,
+    /// What the data say without any model.
+    pub findings: Vec<Finding>,
 }
+
+/// An effect that the symmetries of the data rule out: the base model with next to none of it.
+fn ruled_out(bench: &Bench, base: &Fit, choice: Choice, of: &[usize]) -> Hypothesis {
+    let mut fit = base.clone();
+    fit.added = vec![choice];
+    fit.x.resize(bench.coordinates(&fit.added).len(), 0.0);
+    fit.x[base.x.len()] = NEXT_TO_NONE;
+    if let crate::effects::Spread::Absolute(_) = bench.coordinates(&fit.added)[base.x.len()].spread {
+        fit.x[base.x.len()] = 0.0;
+    }
+    fit.jacobian = None;
+    level(bench, fit, of)
+}
+
+/// Whitened severity of an effect that is as good as absent.
+const NEXT_TO_NONE: f64 = -3.5;
 
 /// Switches for the ablation table.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,6 +96,8 @@ const SETTLED: f64 = 0.8;
 const NEAR: [Effort; 2] = [effort(2, 9, 3.0, None), effort(2, 9, 1.0, None)];
 /// With Jacobians of its own.
 pub const FINE: [Effort; 1] = [effort(4, 4, 1.0, None)];
+/// From an effect's own first guess.
+const GUESS: [Effort; 2] = [effort(2, 9, 2.0, None), effort(3, 9, 1.0, None)];
 /// Once more.
 const AGAIN: Effort = effort(2, 9, 1.0, None);
 
@@ -82,34 +107,55 @@ const AGAIN: Effort = effort(2, 9, 1.0, None);
 /// What stops the reduction of the block.
 pub fn fit_all(
     bench: &mut Bench,
-    start: Vec<f64>,
+    guess: &Guess,
     of: &[usize],
     method: Method,
     progress: &(dyn Fn(f64, &str) + Sync),
 ) -> Result<Fits, Fault> {
     progress(0.1, "recalibrating the base model");
-    let x = start;
+    let x = guess.base.clone();
     bench.measure_floor(&bench.params(&[], &x), of)?;
     let bench: &Bench = bench;
     let mut base = evaluate(bench, &[], x, of);
     if method.recalibrate {
-        base = recalibrate(bench, base, of);
+        base = recalibrate(bench, base, of, !guess.promises());
     }
     let left = |fit: &Fit| format!("{:.2} of the floor left", fit.objective / bench.total_weight(of));
     progress(0.3, &format!("recalibrated: {}", left(&base)));
     base.jacobian = Some(full_jacobian(bench, &base, of));
+    let possible = symmetry::possible(&guess.findings);
     let mut singles = Vec::new();
     let mut response = Vec::new();
     for (effect, spec) in bench.specs.iter().enumerate() {
         let done = 0.35 + 0.20 * effect as f64 / bench.specs.len() as f64;
         progress(done, &format!("fitting {}", spec.effect));
-        let (found, tried) = start_effect(bench, &base, Choice { effect, form: 0 }, of, method);
+        let choice = Choice { effect, form: 0 };
+        if !possible[effect] {
+            response.push((0.0, 0.0));
+            singles.push(ruled_out(bench, &base, choice, of));
+            continue;
+        }
+        let (found, tried) = start_effect(bench, &base, choice, of, method);
         response.push(tried);
         singles.push(level(bench, found, of));
     }
+    let own = |at: usize| guess.effects.get(at).cloned().flatten();
+    let mut likely: Vec<_> =
+        (0..singles.len()).filter_map(|at| own(at).map(|guess| (at, guess))).collect();
+    likely.sort_by(|a, b| a.1 .2.total_cmp(&b.1 .2));
+    likely.truncate(if method.recalibrate { GUESSED } else { 0 });
+    for (at, (added, x, _)) in likely {
+        progress(0.54, "effects from their own first guess");
+        let fit = evaluate(bench, &added, x, of);
+        let fit = approach(bench, fit, of, &GUESS);
+        if fit.objective < singles[at].fit.objective {
+            singles[at] = level(bench, fit, of);
+        }
+    }
     if method.families {
         progress(0.55, "other forms of the best effects");
-        for at in ranked(&singles).into_iter().take(FAMILIES) {
+        let order = ranked(&singles).into_iter().filter(|at| possible[*at]);
+        for at in order.take(FAMILIES).collect::<Vec<_>>() {
             let effect = singles[at].added[0].effect;
             for form in 1..bench.specs[effect].forms.len() {
                 let (found, _) = start_effect(bench, &base, Choice { effect, form }, of, method);
@@ -119,7 +165,7 @@ pub fn fit_all(
             }
         }
     }
-    let order = ranked(&singles);
+    let order: Vec<usize> = ranked(&singles).into_iter().filter(|at| possible[*at]).collect();
     for (k, at) in order.iter().take(REFINED).enumerate() {
         progress(0.6 + 0.15 * k as f64 / REFINED as f64, "refining the best effects");
         if method.recalibrate {
@@ -135,29 +181,114 @@ pub fn fit_all(
         base = again(bench, base, &singles, &order, of);
         progress(0.8, &format!("recalibrated: {}", left(&base)));
     }
-    let pairs = pairs(bench, &base, &singles, of, method, progress);
-    progress(1.0, "fitted");
-    Ok(Fits { base: level(bench, base, of), singles, pairs, response })
+    let pairs = pairs(bench, &singles, &guess.findings, of, method, progress);
+    progress(0.95, "fitted");
+    let findings = guess.findings.clone();
+    Ok(Fits { base: level(bench, base, of), singles, pairs, response, findings })
 }
 
-/// The base model's parameters from the free block and the first millisecond: `bench` looks at
-/// no more.
+/// Where fits begin: all of them from the datasheet, after the same effort.
+#[derive(Clone, Debug)]
+pub struct Guess {
+    /// The base model's parameters.
+    pub base: Vec<f64>,
+    /// How well they do.
+    pub level: f64,
+    /// Every effect in its best form, its parameters with the base model's before them, and how well they do; none of
+    /// effects that the symmetries of the data rule out.
+    pub effects: Vec<Option<(Vec<Choice>, Vec<f64>, f64)>>,
+    /// What the data say without any model.
+    pub findings: Vec<Finding>,
+}
+
+impl Guess {
+    /// Does an effect already do far better than the base model? Then there is no need to search on
+    /// for a base model that does.
+    fn promises(&self) -> bool {
+        self.effects.iter().flatten().any(|e| e.2 < 0.6 * self.level && self.level > SETTLED)
+    }
+}
+
+/// First guesses from the free block and the first millisecond: `bench` looks at no more. An effect
+/// begins at the datasheet and not at the recalibrated base model, which its absence has bent.
 ///
 /// # Errors
 /// What stops the reduction of the block.
-pub fn first_guess(bench: &mut Bench, of: &[usize]) -> Result<Vec<f64>, Fault> {
+pub fn first_guess(
+    bench: &mut Bench,
+    findings: Vec<Finding>,
+    of: &[usize],
+    method: Method,
+    progress: &(dyn Fn(f64, &str) + Sync),
+) -> Result<Guess, Fault> {
     let struck = struck(bench, vec![0.0; bench.base_size()], of);
     let first = approach(bench, evaluate(bench, &[], struck, of), of, &FAR[..1]);
     bench.measure_floor(&bench.params(&[], &first.x), of)?;
-    let again = evaluate(bench, &[], first.x, of);
-    Ok(approach(bench, again, of, &FAR[1..]).x)
+    let bench: &Bench = bench;
+    let base = approach(bench, evaluate(bench, &[], first.x, of), of, &FAR[1..]);
+    let mut effects = Vec::new();
+    let possible = symmetry::possible(&findings);
+    for (effect, spec) in bench.specs.iter().enumerate() {
+        if !possible[effect] {
+            effects.push(None);
+            continue;
+        }
+        progress(0.05 + 0.01 * effect as f64, &format!("first guess of {}", spec.effect));
+        let forms = if method.families { spec.forms.len() } else { 1 };
+        let datasheet = vec![0.0; bench.base_size()];
+        let fits = (0..forms).flat_map(|form| {
+            let added = vec![Choice { effect, form }];
+            let points = starts(bench, &added, &datasheet);
+            points.into_iter().map(move |x| evaluate(bench, &added, x, of))
+        });
+        let Some(fit) = fits.min_by(|a, b| a.objective.total_cmp(&b.objective)) else { continue };
+        let fit = approach(bench, fit, of, &FIRST);
+        let level = fit.objective / bench.total_weight(of);
+        effects.push(Some((fit.added, fit.x, level)));
+    }
+    let level = base.objective / bench.total_weight(of);
+    Ok(Guess { base: base.x, level, effects, findings })
 }
 
+/// From the datasheet towards the optimum of an effect, on the first millisecond.
+const FIRST: [Effort; 2] = [effort(4, 2, 4.0, None), effort(3, 3, 1.0, None)];
+/// So many effects go on from their own first guess.
+const GUESSED: usize = 5;
+
+/// Starting points of an effect, the last of `added`, at the nuisance parameters `x`.
+fn starts(bench: &Bench, added: &[Choice], x: &[f64]) -> Vec<Vec<f64>> {
+    let coordinates = bench.coordinates(added);
+    let signed = matches!(coordinates[x.len()].spread, crate::effects::Spread::Absolute(_));
+    let severities = if signed { [-0.7, 0.7] } else { STARTS };
+    let at = |severity: &f64| {
+        let mut point = x.to_vec();
+        point.resize(coordinates.len(), 0.0);
+        point[x.len()] = *severity;
+        point
+    };
+    let mut points: Vec<Vec<f64>> = severities.iter().map(at).collect();
+    if coordinates.len() > x.len() + 2 {
+        // Three parameters of which one may be a phase: look around.
+        let mut noise = Noise::new(coordinates.len() as u64);
+        for _ in 0..DRAWN {
+            let mut point = points[0].clone();
+            for value in &mut point[x.len()..] {
+                *value = noise.normal().clamp(-2.0, 2.0);
+            }
+            points.push(point);
+        }
+    }
+    points
+}
+
+/// Points at which effects with three parameters are looked at before one is taken.
+const DRAWN: usize = 24;
+
 /// The base model's optimum from `start`.
-pub fn recalibrate(bench: &Bench, start: Fit, of: &[usize]) -> Fit {
+pub fn recalibrate(bench: &Bench, start: Fit, of: &[usize], search: bool) -> Fit {
     let mut best = approach(bench, start, of, &HOME);
-    for heat in [4.0, 2.0] {
-        if best.objective < SETTLED * bench.total_weight(of) {
+    for heat in [3.0] {
+        if !search || best.objective < SETTLED * bench.total_weight(of) {
             break;
         }
         let view = View { heat, onset_parts: None };
@@ -216,23 +347,13 @@ fn start_effect(
     added.push(choice);
     let coordinates = bench.coordinates(&added);
     let at = base.x.len();
-    let signed = matches!(coordinates[at].spread, crate::effects::Spread::Absolute(_));
-    let starts = if signed { [-0.7, 0.7] } else { STARTS };
-    let points: Vec<Vec<f64>> = starts
-        .iter()
-        .map(|severity| {
-            let mut x = base.x.clone();
-            x.resize(coordinates.len(), 0.0);
-            x[at] = *severity;
-            x
-        })
-        .collect();
+    let points = starts(bench, &added, &base.x);
     let mut tried = (0.0, 0.0);
     let mut best: Option<Fit> = None;
     for (k, x) in points.into_iter().enumerate() {
         let fit = evaluate(bench, &added, x, of);
         if k == 0 {
-            tried = (coordinates[at].value(starts[0]).abs(), caused(bench, base, &fit));
+            tried = (coordinates[at].value(fit.x[at]).abs(), caused(bench, base, &fit));
         }
         best = better(best, fit);
     }
@@ -285,42 +406,45 @@ fn again(
     base
 }
 
-/// Pairs among the best effects, started from the better of the two.
+/// The best effect with every other that the symmetries allow beside it, then once more the best
+/// of these pairs.
 fn pairs(
     bench: &Bench,
-    base: &Fit,
     singles: &[Hypothesis],
+    findings: &[Finding],
     of: &[usize],
     method: Method,
     progress: &(dyn Fn(f64, &str) + Sync),
 ) -> Vec<Hypothesis> {
-    let order = ranked(singles);
-    let mut best: Vec<usize> = order.into_iter().take(PAIRED).collect();
-    best.retain(|at| singles[*at].fit.objective < base.objective);
-    let mut out = Vec::new();
-    let mut done = 0.82;
-    for (i, first) in best.iter().enumerate() {
-        for second in &best[i + 1..] {
-            // Two fits that need each other start from the better one.
-            progress(done, "fitting pairs");
-            done = f64::min(done + 0.03, 0.98);
-            let from = &singles[*first].fit;
-            let choice = singles[*second].added[0];
-            let mut from = from.clone();
-            if from.jacobian.is_none() {
-                from.jacobian = Some(full_jacobian(bench, &from, of));
-            }
-            let (found, _) = start_effect(bench, &from, choice, of, method);
-            out.push(level(bench, found, of));
-        }
+    let possible = symmetry::possible(findings);
+    let Some(first) = ranked(singles).into_iter().find(|at| possible[*at]) else {
+        return Vec::new();
+    };
+    if singles[first].level < LITTLE {
+        return Vec::new();
     }
-    let order = ranked(&out);
-    if let Some(at) = order.first().copied() {
-        let fit = improve(bench, out[at].fit.clone(), of, AGAIN);
+    let mut from = singles[first].fit.clone();
+    if from.jacobian.is_none() {
+        from.jacobian = Some(full_jacobian(bench, &from, of));
+    }
+    let against = |e: usize| symmetry::contradictions(findings, &[from.added[0].effect, e]);
+    let others = (0..singles.len()).filter(|e| *e != from.added[0].effect);
+    let least = others.clone().map(against).min().unwrap_or(0);
+    let mut out = Vec::new();
+    for effect in others.filter(|e| against(*e) == least) {
+        progress(0.82 + 0.01 * effect as f64, "fitting pairs");
+        let choice = Choice { effect, form: singles[effect].added[0].form };
+        let (found, _) = start_effect(bench, &from, choice, of, method);
+        out.push(level(bench, found, of));
+    }
+    if let Some(at) = ranked(&out).first().copied() {
+        let fit = approach(bench, out[at].fit.clone(), of, &FINE);
         if fit.objective < out[at].fit.objective {
             out[at] = level(bench, fit, of);
         }
     }
+    out.sort_by(|a, b| a.level.total_cmp(&b.level));
+    out.truncate(PAIRED);
     out
 }
 

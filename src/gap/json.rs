@@ -66,6 +66,10 @@ pub fn document(d: &Diagnosis) -> Json {
             "with-effect_effects": decide::names(bench, &d.fits, &best),
         },
         "recalibration": parameters(d, &Cause::None),
+        "rules": d.fits.findings.iter().map(|f| json!({
+            "rule": format!("{:?}", f.rule).to_lowercase(), "value": f.value, "broken": f.broken,
+            "text": f.text,
+        })).collect::<Vec<_>>(),
         "flags": diagnose::flags(d).iter().map(Problem::to_string).collect::<Vec<_>>(),
         "provenance": {
             "data_hash": format!("{:016x}", d.campaign.hash()),

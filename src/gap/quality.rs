@@ -64,7 +64,7 @@ pub fn of_record(
     let tell = |what: &str, value: String, allowed: &str, remedy: &str| {
         Problem::new(format!("{}: {what}", spec.file), value, allowed, remedy)
     };
-    check_time(record, plan, spec)?;
+    check_time(record, plan, spec, warnings)?;
     for (c, name) in CHANNELS.iter().enumerate() {
         let Some(values) = record.channel[c].as_mut() else {
             if spec.kind != RunKind::Ringdown && plan.noise[c].is_some() {
@@ -91,11 +91,19 @@ pub fn of_record(
     Ok(())
 }
 
-fn check_time(record: &Record, plan: &Plan, spec: &RunSpec) -> Result<(), Problem> {
+/// A clock that is off by up to this share is told, and the rows are taken by their number.
+const WRONG_CLOCK: f64 = 0.15;
+
+fn check_time(
+    record: &mut Record,
+    plan: &Plan,
+    spec: &RunSpec,
+    warnings: &mut Vec<Problem>,
+) -> Result<(), Problem> {
     let tell = |value: String, allowed: &str, remedy: &str| {
         Err(Problem::new(format!("{}: time_s", spec.file), value, allowed, remedy))
     };
-    let time = &record.time;
+    let time = &mut record.time;
     if time.len() < 50 {
         return tell(format!("{} rows", time.len()), "50 rows or more", "the run is left out");
     }
@@ -105,7 +113,21 @@ fn check_time(record: &Record, plan: &Plan, spec: &RunSpec) -> Result<(), Proble
     }
     let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
     let expected = 1.0 / plan.sampling_rate;
-    if (step / expected - 1.0).abs() > 0.02 {
+    record.clock = step / expected;
+    if (record.clock - 1.0).abs() > 0.005 && (record.clock - 1.0).abs() <= WRONG_CLOCK {
+        let what = "time_s against channels.sampling_rate_hz";
+        if !warnings.iter().any(|w| w.what == what) {
+            warnings.push(Problem::new(
+                what,
+                format!("{step:.7} s per sample ({} and perhaps others)", spec.file),
+                format!("{expected:.7} s"),
+                "rows are taken at the sampling rate, and no effect is named: find out which of the two is right",
+            ));
+        }
+        for (row, t) in time.iter_mut().enumerate() {
+            *t = row as f64 * expected;
+        }
+    } else if (record.clock - 1.0).abs() > WRONG_CLOCK {
         return tell(
             format!("{:.6} s per sample", step),
             &format!("{expected:.6} s, as channels.sampling_rate_hz says"),

@@ -189,7 +189,8 @@ impl Sampler {
     fn new(plan: &Plan, until: f64) -> Self {
         let count = rows(until, 1.0 / plan.sampling_rate) + 1;
         let column = || Vec::with_capacity(count);
-        let record = Record { time: column(), channel: std::array::from_fn(|_| Some(column())) };
+        let channel = std::array::from_fn(|_| Some(column()));
+        let record = Record { time: column(), channel, clock: 1.0 };
         Self { record, height: plan.block.height_m }
     }
 

@@ -1,0 +1,338 @@
+//! Which effect explains a friction record: laws that are linear but for one length or time, fitted on
+//! some strokes and judged on others.
+
+use super::friction_record::FrictionRecord;
+use nalgebra::{DMatrix, DVector};
+
+/// Lengths and times that are tried, as a share of the longest stroke: from the first samples to it.
+const SHARES: [f64; 9] = [0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.2, 0.4, 0.8];
+/// Nats per unit of ln(held-out mean square): samples of one stroke err together, so strokes count.
+const NATS_PER_PIECE: f64 = 1.0;
+/// Pieces into which a record without strokes is cut, each side of the step.
+const PIECES: usize = 8;
+/// Share of the variance that a law may leave and still be called adequate, where repeated strokes say
+/// nothing of the noise.
+const ADEQUATE: f64 = 0.1;
+
+/// A law that may be added to constant friction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Law {
+    /// Constant friction: nothing is missing.
+    Constant,
+    /// Friction that follows the logarithm of the speed at once: the base model has it, so it is
+    /// recalibration and not an effect.
+    Speed,
+    /// Friction that remembers the slip since the last change: rate and state.
+    FrictionAgeing,
+    /// Friction that follows the friction power over a time.
+    ThermalFriction,
+    /// A force that does not grow with the load.
+    Adhesion,
+    /// Friction that changes along the way: a tilted or worn partner.
+    Misalignment,
+    /// Friction that drifts with all the slip there was: wear.
+    Drift,
+}
+
+impl Law {
+    /// All.
+    pub const ALL: [Self; 7] = [
+        Self::Constant,
+        Self::Speed,
+        Self::FrictionAgeing,
+        Self::ThermalFriction,
+        Self::Adhesion,
+        Self::Misalignment,
+        Self::Drift,
+    ];
+
+    /// Name in the results; effects of the list have their own.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "none",
+            Self::Speed => "recalibration (speed)",
+            Self::FrictionAgeing => "friction_ageing",
+            Self::ThermalFriction => "thermal_friction",
+            Self::Adhesion => "adhesion",
+            Self::Misalignment => "misalignment",
+            Self::Drift => "wear (drift with slip)",
+        }
+    }
+}
+
+/// A fitted law.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    /// The law.
+    pub law: Law,
+    /// Root mean square error on held-out pieces, in the record's unit.
+    pub held_out: f64,
+    /// Root mean square error where it was fitted.
+    pub fitted: f64,
+    /// Length [m] or time [s] of its memory, if it has one.
+    pub memory: Option<f64>,
+    /// Coefficients with standard deviations: name, value, deviation.
+    pub coefficients: Vec<(&'static str, f64, f64)>,
+    /// Probability among the laws.
+    pub probability: f64,
+    /// Share that it closes of what constant friction with recalibrated speed leaves above the noise.
+    pub closed: f64,
+}
+
+/// What a record says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// All laws, the most probable first.
+    pub laws: Vec<Fitted>,
+    /// Noise: root mean square change between neighbouring samples over the root of two.
+    pub noise: f64,
+    /// Does the best law leave more than it should?
+    pub remainder: bool,
+    /// Error of the best law by quarter of a stroke, from its beginning.
+    pub quarters: [f64; 4],
+}
+
+/// Fits all laws to a record.
+pub fn explain(record: &FrictionRecord) -> Verdict {
+    let pieces = pieces(record);
+    let count = pieces.iter().copied().max().unwrap_or(0) + 1;
+    let noise = noise(record);
+    let mut laws: Vec<Fitted> =
+        Law::ALL.iter().filter_map(|law| best(record, *law, &pieces)).collect();
+    let judged = (count / 2).max(1) as f64;
+    let nats: Vec<f64> = laws
+        .iter()
+        .map(|l| {
+            let free = l.coefficients.len() as f64 + f64::from(u8::from(l.memory.is_some()));
+            let square = l.held_out.powi(2) + noise * noise;
+            -0.5 * NATS_PER_PIECE * judged * square.ln() - 0.5 * free
+        })
+        .collect();
+    let highest = nats.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let total: f64 = nats.iter().map(|n| (n - highest).exp()).sum();
+    let before = laws.iter().find(|l| l.law == Law::Speed).map_or(0.0, |l| l.held_out);
+    let open = (before * before - noise * noise).max(1e-300);
+    for (law, n) in laws.iter_mut().zip(&nats) {
+        law.probability = (n - highest).exp() / total;
+        law.closed = ((before.powi(2) - law.held_out.powi(2)) / open).clamp(-1.0, 1.0);
+    }
+    laws.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let spread = deviation(&record.value);
+    let remainder = laws.first().is_some_and(|l| {
+        l.held_out > 3.0 * noise && l.held_out.powi(2) > ADEQUATE * spread.powi(2).min(before.powi(2))
+    });
+    let quarters = laws.first().map_or([0.0; 4], |l| by_quarter(record, l));
+    Verdict { laws, noise, remainder, quarters }
+}
+
+/// Strokes, or pieces of equal length on each side of the step; even ones are fitted, odd ones judged.
+fn pieces(record: &FrictionRecord) -> Vec<usize> {
+    let strokes = record.stroke.last().copied().unwrap_or(0) + 1;
+    if record.piston && strokes >= 4 {
+        // Out and back belong together: two strokes fitted, two judged.
+        return record.stroke.iter().map(|s| s / 2).collect();
+    }
+    let count = record.stroke.len();
+    let mut out = Vec::with_capacity(count);
+    for i in 0..count {
+        let same: Vec<usize> = [0, count - 1].to_vec();
+        debug_assert_eq!(same.len(), 2);
+        let first = record.stroke.partition_point(|s| *s < record.stroke[i]);
+        let last = record.stroke.partition_point(|s| *s <= record.stroke[i]);
+        // After a change things happen at once: pieces of equal share of the logarithm.
+        let at = ((i - first) as f64 + 1.0).ln() / ((last - first) as f64 + 1.0).ln();
+        out.push(2 * PIECES * record.stroke[i] + (at * (2 * PIECES) as f64) as usize % (2 * PIECES));
+    }
+    out
+}
+
+fn noise(record: &FrictionRecord) -> f64 {
+    // Second differences: blind to slow changes; variance 6σ².
+    let squares: Vec<f64> =
+        record.value.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).powi(2) / 6.0).collect();
+    let mut sorted = squares;
+    sorted.sort_by(f64::total_cmp);
+    // Median of χ² of one degree of freedom: 0.455.
+    (sorted.get(sorted.len() / 2).copied().unwrap_or(0.0) / 0.455).sqrt()
+}
+
+fn deviation(values: &[f64]) -> f64 {
+    let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
+    (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}
+
+/// The law with the memory that does best where it is fitted.
+fn best(record: &FrictionRecord, law: Law, pieces: &[usize]) -> Option<Fitted> {
+    let longest = match law {
+        Law::FrictionAgeing => record.since.iter().copied().fold(0.0, f64::max),
+        Law::ThermalFriction => record.since_time.iter().copied().fold(0.0, f64::max),
+        Law::Adhesion if record.pressure.is_none() => return None,
+        _ => return one(record, law, None, pieces),
+    };
+    SHARES
+        .iter()
+        .filter_map(|share| one(record, law, Some(share * longest), pieces))
+        .min_by(|a, b| a.fitted.total_cmp(&b.fitted))
+}
+
+fn one(
+    record: &FrictionRecord,
+    law: Law,
+    memory: Option<f64>,
+    pieces: &[usize],
+) -> Option<Fitted> {
+    let (names, rows) = design(record, law, memory);
+    let fit: Vec<usize> = (0..pieces.len()).filter(|i| pieces[*i] % 2 == 0).collect();
+    let judge: Vec<usize> = (0..pieces.len()).filter(|i| pieces[*i] % 2 == 1).collect();
+    if fit.len() <= names.len() || judge.is_empty() {
+        return None;
+    }
+    let x = DMatrix::from_fn(fit.len(), names.len(), |i, j| rows[fit[i]][j]);
+    let y = DVector::from_fn(fit.len(), |i, _| record.value[fit[i]]);
+    // Columns to one size, so that the normal matrix is well conditioned.
+    let size: Vec<f64> = (0..names.len()).map(|j| x.column(j).norm().max(1e-300)).collect();
+    let scaled = DMatrix::from_fn(fit.len(), names.len(), |i, j| x[(i, j)] / size[j]);
+    let normal = scaled.tr_mul(&scaled) + DMatrix::identity(names.len(), names.len()) * 1e-12;
+    let factor = normal.cholesky()?;
+    let solution = factor.solve(&scaled.tr_mul(&y));
+    let error = |of: &[usize]| {
+        let sum: f64 = of
+            .iter()
+            .map(|i| {
+                let told: f64 = (0..names.len()).map(|j| rows[*i][j] / size[j] * solution[j]).sum();
+                (record.value[*i] - told).powi(2)
+            })
+            .sum();
+        (sum / of.len() as f64).sqrt()
+    };
+    let fitted = error(&fit);
+    let inverse = factor.inverse();
+    // Errors of one piece are one error.
+    let independent = (fit.len() as f64 / (pieces.iter().max()? / 2 + 1) as f64).max(1.0);
+    let coefficients = names
+        .iter()
+        .enumerate()
+        .map(|(j, name)| {
+            let deviation = fitted * (inverse[(j, j)] * independent).sqrt() / size[j];
+            (*name, solution[j] / size[j], deviation)
+        })
+        .collect();
+    Some(Fitted {
+        law,
+        held_out: error(&judge),
+        fitted,
+        memory,
+        coefficients,
+        probability: 0.0,
+        closed: 0.0,
+    })
+}
+
+/// Names of the coefficients, and their factors sample by sample.
+fn design(
+    record: &FrictionRecord,
+    law: Law,
+    memory: Option<f64>,
+) -> (Vec<&'static str>, Vec<Vec<f64>>) {
+    let mean = |c: &[f64]| c.iter().sum::<f64>() / c.len().max(1) as f64;
+    let speed = mean(&record.speed);
+    let place = mean(&record.place);
+    let load = record.pressure.as_ref().map_or(1.0, |p| mean(p));
+    let mut names = vec!["friction"];
+    if record.piston {
+        names.push("area [m²]");
+    }
+    if law != Law::Constant {
+        names.push("change per e-fold of speed");
+    }
+    match law {
+        Law::Constant | Law::Speed => {}
+        Law::FrictionAgeing => names.push("change at a fresh contact"),
+        Law::ThermalFriction => names.push("change when warm"),
+        Law::Adhesion => names.push("change with the load, relative"),
+        Law::Misalignment => names.push("change per metre of the way"),
+        Law::Drift => names.push("change per metre of slip"),
+    }
+    let rows = (0..record.value.len())
+        .map(|i| {
+            let sign = record.direction[i];
+            let mut row = vec![sign];
+            let pressure = record.pressure.as_ref().map(|p| p[i]);
+            if record.piston {
+                row.push(pressure.unwrap_or(0.0));
+            }
+            let fast = (record.speed[i] / speed).ln();
+            if law != Law::Constant {
+                row.push(sign * fast);
+            }
+            let kept = |x: f64| (-x / memory.unwrap_or(1.0)).exp();
+            match law {
+                Law::Constant | Law::Speed => {}
+                Law::FrictionAgeing => row.push(sign * kept(record.since[i])),
+                Law::ThermalFriction => row.push(sign * (1.0 - kept(record.since_time[i]))),
+                Law::Adhesion => row.push(sign * (pressure.unwrap_or(load) / load - 1.0)),
+                Law::Misalignment => row.push(sign * (record.place[i] - place)),
+                Law::Drift => row.push(sign * record.slip[i]),
+            }
+            row
+        })
+        .collect();
+    (names, rows)
+}
+
+fn by_quarter(record: &FrictionRecord, law: &Fitted) -> [f64; 4] {
+    let (_, rows) = design(record, law.law, law.memory);
+    let longest = record.since.iter().copied().fold(1e-300, f64::max);
+    let (mut sum, mut count) = ([0.0; 4], [0.0; 4]);
+    for (i, row) in rows.iter().enumerate() {
+        let told: f64 = row.iter().zip(&law.coefficients).map(|(x, c)| x * c.1).sum();
+        let k = ((4.0 * record.since[i] / longest) as usize).min(3);
+        sum[k] += (record.value[i] - told).powi(2);
+        count[k] += 1.0;
+    }
+    std::array::from_fn(|k| (sum[k] / f64::max(count[k], 1.0)).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A speed step by 10 at row 600 whose friction evolves over 20 µm of slip.
+    fn made(evolves: f64) -> FrictionRecord {
+        let count = 1500;
+        let speed: Vec<f64> = (0..count).map(|i| if i < 600 { 1e-6 } else { 1e-5 }).collect();
+        let slip: Vec<f64> = (0..count).map(|i| speed[..i].iter().sum::<f64>() * 0.1).collect();
+        let since: Vec<f64> =
+            (0..count).map(|i| if i < 600 { slip[i] } else { slip[i] - slip[600] }).collect();
+        let value = (0..count)
+            .map(|i| {
+                let wiggle = 1e-4 * ((i * 7919 % 13) as f64 - 6.0) / 6.0;
+                let fresh = if i < 600 { 0.0 } else { evolves * (-since[i] / 20e-6).exp() };
+                0.6 + 0.005 * (speed[i] / 1e-6_f64).ln() + fresh + wiggle
+            })
+            .collect();
+        FrictionRecord {
+            file: "made".into(),
+            time: (0..count).map(|i| 0.1 * i as f64).collect(),
+            value,
+            direction: vec![1.0; count],
+            since_time: (0..count).map(|i| 0.1 * (i % 600) as f64).collect(),
+            stroke: (0..count).map(|i| usize::from(i >= 600)).collect(),
+            place: slip.clone(),
+            slip,
+            since,
+            speed,
+            pressure: None,
+            piston: false,
+        }
+    }
+
+    #[test]
+    fn friction_that_follows_the_speed_at_once_needs_no_effect() {
+        let verdict = explain(&made(0.0));
+        let recalibrated = verdict.laws.iter().find(|l| l.law == Law::Speed).unwrap();
+        // 0.005 per e-fold was put in; the wiggle is 1e-4.
+        assert!((recalibrated.coefficients[1].1 - 0.005).abs() < 2e-4);
+        assert!(recalibrated.held_out < 1.5e-4);
+    }
+}

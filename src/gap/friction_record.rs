@@ -1,0 +1,257 @@
+//! Friction records without block dynamics: friction against imposed slip, load and time.
+//!
+//! Two kinds of file are read. `time_s, displacement_m, friction_coefficient` and, if measured,
+//! `normal_pressure_pa`: a friction coefficient while the sliding speed changes. `time_s, position_m,
+//! pressure_pa, force_n`: a piston dragged to and fro, force = pressure × area ± friction.
+
+use crate::columns;
+use crate::error::{Fault, Problem};
+use std::path::Path;
+
+const REMEDY: &str = "write time_s with displacement_m and friction_coefficient, or with position_m, \
+                      force_n and pressure_pa, in SI units";
+/// Samples of a record after thinning: enough for every law here, and fast.
+const SAMPLES: usize = 6000;
+/// Samples over which speed is measured, each way.
+const SPEED_REACH: usize = 3;
+/// Samples at the least.
+const FEWEST: usize = 100;
+
+/// What was measured, cut to what slides.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrictionRecord {
+    /// File.
+    pub file: String,
+    /// Time [s].
+    pub time: Vec<f64>,
+    /// Friction [-], or force [N] of a piston.
+    pub value: Vec<f64>,
+    /// +1 or −1: the direction in which friction acts on the value; +1 throughout for a coefficient.
+    pub direction: Vec<f64>,
+    /// Sliding speed, not less than 1 % of its median [m/s].
+    pub speed: Vec<f64>,
+    /// Slip [m] since the direction or the imposed speed changed.
+    pub since: Vec<f64>,
+    /// Time [s] since then.
+    pub since_time: Vec<f64>,
+    /// Slip [m] since the start.
+    pub slip: Vec<f64>,
+    /// Place [m].
+    pub place: Vec<f64>,
+    /// Pressure [Pa] on the contact or behind the piston, if measured.
+    pub pressure: Option<Vec<f64>>,
+    /// Number of the stroke, or of the piece between changes of speed.
+    pub stroke: Vec<usize>,
+    /// Is the value a force that holds pressure × area?
+    pub piston: bool,
+}
+
+/// Reads a record.
+///
+/// # Errors
+/// A file that cannot be read, or columns from which nothing can be concluded.
+pub fn read(path: &Path) -> Result<FrictionRecord, Fault> {
+    let shown = path.display().to_string();
+    let has = header(path)?;
+    let piston = has.iter().any(|h| h == "force_n");
+    let mut names = if piston {
+        vec!["time_s", "position_m", "force_n", "pressure_pa"]
+    } else {
+        vec!["time_s", "displacement_m", "friction_coefficient"]
+    };
+    if !piston && has.iter().any(|h| h == "normal_pressure_pa") {
+        names.push("normal_pressure_pa");
+    }
+    let mut columns = columns::read(path, &names, REMEDY)?;
+    let pressure = (columns.len() > 3).then(|| columns.swap_remove(3));
+    let mut next = || columns.remove(0);
+    let (time, place, value) = (next(), next(), next());
+    check(&shown, &time, &value, &place)?;
+    Ok(cut(shown, time, value, place, pressure, piston))
+}
+
+fn header(path: &Path) -> Result<Vec<String>, Fault> {
+    let fault = |reason: String| Fault::File { path: path.display().to_string(), reason };
+    let text = std::fs::read_to_string(path).map_err(|e| fault(e.to_string()))?;
+    let first = text.lines().next().unwrap_or("").trim_start_matches('\u{feff}');
+    Ok(first.split(',').map(|h| h.trim().to_string()).collect())
+}
+
+fn check(file: &str, time: &[f64], value: &[f64], place: &[f64]) -> Result<(), Fault> {
+    let mut problems = Vec::new();
+    if time.len() < FEWEST {
+        problems.push(Problem::new(
+            file,
+            format!("{} rows", time.len()),
+            format!("{FEWEST} at the least"),
+            "measure longer",
+        ));
+    }
+    for (name, column) in [("time", time), ("friction", value), ("displacement", place)] {
+        if column.iter().any(|x| !x.is_finite()) {
+            problems.push(Problem::new(
+                format!("{file}, {name}"),
+                "not finite",
+                "numbers",
+                "mend or cut these rows",
+            ));
+        }
+        let first = column.first().copied().unwrap_or(0.0);
+        if column.iter().all(|x| *x == first) {
+            problems.push(Problem::new(
+                format!("{file}, {name}"),
+                "constant",
+                "a measured column",
+                "check the channel",
+            ));
+        }
+    }
+    if time.windows(2).any(|w| w[1] < w[0]) {
+        problems.push(Problem::new(
+            format!("{file}, time"),
+            "runs backwards",
+            "rising times",
+            "sort the rows or cut the record",
+        ));
+    }
+    if problems.is_empty() {
+        Ok(())
+    } else {
+        Err(Fault::Invalid(problems))
+    }
+}
+
+/// Means of neighbouring rows, so that about [`SAMPLES`] are left.
+fn thin(column: &[f64], every: usize) -> Vec<f64> {
+    column.chunks_exact(every).map(|c| c.iter().sum::<f64>() / every as f64).collect()
+}
+
+fn cut(
+    file: String,
+    time: Vec<f64>,
+    value: Vec<f64>,
+    place: Vec<f64>,
+    pressure: Option<Vec<f64>>,
+    piston: bool,
+) -> FrictionRecord {
+    let every = (time.len() / SAMPLES).max(1);
+    let [time, value, place] = [&time, &value, &place].map(|c| thin(c, every));
+    let pressure = pressure.map(|p| thin(&p, every));
+    let count = time.len();
+    let velocity: Vec<f64> = (0..count)
+        .map(|i| {
+            let (a, b) = (i.saturating_sub(SPEED_REACH), (i + SPEED_REACH).min(count - 1));
+            (place[b] - place[a]) / (time[b] - time[a]).max(1e-12)
+        })
+        .collect();
+    let mut sizes: Vec<f64> = velocity.iter().map(|v| v.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let typical = sizes[count / 2].max(1e-15);
+    let changes = if piston {
+        reversals(&velocity, 0.3 * typical)
+    } else {
+        steps(&time, &place)
+    };
+    let mut record = FrictionRecord {
+        file,
+        time: Vec::new(),
+        value: Vec::new(),
+        direction: Vec::new(),
+        speed: Vec::new(),
+        since: Vec::new(),
+        since_time: Vec::new(),
+        slip: Vec::new(),
+        place: Vec::new(),
+        pressure: pressure.as_ref().map(|_| Vec::new()),
+        stroke: Vec::new(),
+        piston,
+    };
+    let (mut slip, mut last, mut stroke) = (0.0, 0, 0);
+    let mut at_change = 0.0;
+    for i in 0..count {
+        if changes.contains(&i) {
+            (last, at_change, stroke) = (i, slip, stroke + 1);
+        }
+        slip += if i > 0 { (place[i] - place[i - 1]).abs() } else { 0.0 };
+        // A piston that stands shows no sliding friction.
+        if piston && velocity[i].abs() < 0.3 * typical {
+            continue;
+        }
+        record.time.push(time[i]);
+        record.value.push(value[i]);
+        record.direction.push(if piston { velocity[i].signum() } else { 1.0 });
+        record.speed.push(velocity[i].abs().max(0.01 * typical));
+        record.since.push(slip - at_change);
+        record.since_time.push(time[i] - time[last]);
+        record.slip.push(slip);
+        record.place.push(place[i]);
+        record.stroke.push(stroke);
+        if let (Some(out), Some(p)) = (record.pressure.as_mut(), &pressure) {
+            out.push(p[i]);
+        }
+    }
+    record
+}
+
+/// Rows at which the direction changes.
+fn reversals(velocity: &[f64], least: f64) -> Vec<usize> {
+    let mut out = Vec::new();
+    let mut sign = 0.0;
+    for (i, v) in velocity.iter().enumerate() {
+        if v.abs() > least && v.signum() != sign {
+            out.push(i);
+            sign = v.signum();
+        }
+    }
+    out
+}
+
+/// The row at which the speed is stepped: two straight lines fit the displacement best.
+fn steps(time: &[f64], place: &[f64]) -> Vec<usize> {
+    let count = time.len();
+    let misfit = |from: usize, to: usize| {
+        let n = (to - from) as f64;
+        let mean = |c: &[f64]| c[from..to].iter().sum::<f64>() / n;
+        let (mt, mx) = (mean(time), mean(place));
+        let (mut tt, mut tx, mut xx) = (0.0, 0.0, 0.0);
+        for i in from..to {
+            let (t, x) = (time[i] - mt, place[i] - mx);
+            tt += t * t;
+            tx += t * x;
+            xx += x * x;
+        }
+        (xx - tx * tx / tt.max(1e-300)).max(0.0)
+    };
+    let candidates = (1..40).map(|k| k * count / 40);
+    let coarse = candidates
+        .min_by(|a, b| {
+            (misfit(0, *a) + misfit(*a, count)).total_cmp(&(misfit(0, *b) + misfit(*b, count)))
+        })
+        .unwrap_or(count / 2);
+    let (lo, hi) = (coarse.saturating_sub(count / 40).max(3), (coarse + count / 40).min(count - 3));
+    let fine = (lo..hi).min_by(|a, b| {
+        (misfit(0, *a) + misfit(*a, count)).total_cmp(&(misfit(0, *b) + misfit(*b, count)))
+    });
+    fine.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_of_the_speed_is_found_where_it_is() {
+        // 1 µm/s for 60 s, then 10 µm/s: exact kink at row 600 of 1000.
+        let time: Vec<f64> = (0..1000).map(|i| 0.1 * f64::from(i)).collect();
+        let place: Vec<f64> =
+            time.iter().map(|t| 1e-6 * t + 9e-6 * (t - 60.0).max(0.0)).collect();
+        let found = steps(&time, &place);
+        assert!((found[0] as i64 - 600).abs() <= 1, "{found:?}");
+    }
+
+    #[test]
+    fn a_piston_that_turns_round_begins_a_stroke() {
+        let velocity = [1.0, 1.0, 0.1, -0.1, -1.0, -1.0, 1.0];
+        assert_eq!(reversals(&velocity, 0.3), vec![0, 4, 6]);
+    }
+}

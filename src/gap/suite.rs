@@ -1,0 +1,187 @@
+//! Campaigns of the own simulator whose effect is known, in the format of measured ones.
+//!
+//! They are cut finer than the fits' model, carry the noise of the channels, draw the block from the
+//! datasheet, and use a functional form other than the one that the first guess of an effect uses;
+//! diagnosed `--without families`, no form in them is known to the diagnosis.
+
+use super::campaign::{self, Plan, Record, CHANNELS};
+use super::fit::Noise;
+use super::predict;
+use super::problem::Coordinate;
+use super::simulate::{nominal, set, Simulator, DATASHEET, FINE};
+use crate::effects::{fit_specs, Spread};
+use crate::error::Fault;
+use crate::params::Params;
+use rayon::prelude::*;
+use serde_json::{json, Map, Value as Json};
+use std::path::Path;
+
+/// The campaign that a suite's campaigns are made after, if none is named.
+pub const TEMPLATE: &str = include_str!("campaign_template.toml");
+/// Severities in standard deviations of the prior of an effect, from weak to strong.
+const SEVERITY: [f64; 2] = [-0.5, 1.0];
+/// Sizes of blocks in turn: length and height [m].
+const SIZES: [(f64, f64); 4] = [(0.015, 0.010), (0.015, 0.008), (0.015, 0.006), (0.018, 0.010)];
+
+/// What causes the gap in a made campaign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Truth {
+    /// Nothing.
+    None,
+    /// An effect of the list in its last form.
+    Effect(usize),
+    /// The force channel's amplifier is off by some per cent; no effect of the list.
+    Gain,
+    /// The clock of the measurement runs at another rate; no effect of the list.
+    Clock,
+}
+
+/// Every fourth campaign has no effect, every eighth one that is not in the list.
+fn truth(number: usize) -> Truth {
+    match number % 8 {
+        0 | 4 => Truth::None,
+        7 if number % 16 == 7 => Truth::Gain,
+        7 => Truth::Clock,
+        k => {
+            let before = number / 8 * 5 + [0, 0, 1, 2, 2, 3, 4][k];
+            Truth::Effect(before % fit_specs().len())
+        }
+    }
+}
+
+/// Writes `count` campaigns with labels and held-out runs into `out`; a seed gives the same campaigns
+/// always.
+///
+/// # Errors
+/// Files that cannot be written, and what stops the block.
+pub fn make(template: &Path, out: &Path, count: usize, seed: u64) -> Result<(), Fault> {
+    let plan = campaign::read_plan(template)?;
+    let text = std::fs::read_to_string(template).map_err(|e| file_fault(template, &e))?;
+    let labels: Result<Vec<(String, Json)>, Fault> = (0..count)
+        .into_par_iter()
+        .map(|number| one(&plan, &text, out, number, seed))
+        .collect();
+    let labels: Map<String, Json> = labels?.into_iter().collect();
+    let target = out.join("labels.json");
+    let text = serde_json::to_string_pretty(&Json::Object(labels)).unwrap_or_default();
+    std::fs::write(&target, text).map_err(|e| file_fault(&target, &e))
+}
+
+fn file_fault(path: &Path, error: &std::io::Error) -> Fault {
+    Fault::File { path: path.display().to_string(), reason: error.to_string() }
+}
+
+fn one(
+    template: &Plan,
+    text: &str,
+    out: &Path,
+    number: usize,
+    seed: u64,
+) -> Result<(String, Json), Fault> {
+    let mut noise = Noise::new(seed.wrapping_mul(1_000_003).wrapping_add(number as u64));
+    let id = format!("own-{:02}", number + 1);
+    let mut plan = template.clone();
+    (plan.block.length_m, plan.block.height_m) = SIZES[number % SIZES.len()];
+    let mut params = drawn(&plan, &mut noise);
+    let truth = truth(number);
+    let severity = SEVERITY[0] + (SEVERITY[1] - SEVERITY[0]) * noise.uniform();
+    let label = add(truth, severity, &mut params, &mut noise);
+    let simulator = Simulator::cut(&plan, FINE)?;
+    let folder = out.join(&id);
+    for spec in &plan.runs {
+        let mut record = simulator.run(&params, spec, spec.duration_s)?;
+        distort(truth, severity, &mut record);
+        blur(&plan, &mut record, &mut noise);
+        let target = folder.join(&spec.file);
+        predict::write(&target, &plan, spec, &record).map_err(|e| file_fault(&target, &e))?;
+    }
+    let target = folder.join("campaign.toml");
+    std::fs::write(&target, titled(text, &id, &plan)).map_err(|e| file_fault(&target, &e))?;
+    Ok((id, label))
+}
+
+/// The template with another name and another block.
+fn titled(text: &str, id: &str, plan: &Plan) -> String {
+    let line = |line: &str| match line.split('=').next().map(str::trim) {
+        Some("id") => format!("id = \"{id}\""),
+        Some("length_m") => format!("length_m = {}", plan.block.length_m),
+        Some("height_m") => format!("height_m = {}", plan.block.height_m),
+        _ => line.to_string(),
+    };
+    text.lines().map(|l| line(l) + "\n").collect()
+}
+
+/// One block from the datasheet.
+fn drawn(plan: &Plan, noise: &mut Noise) -> Params {
+    let mut params = nominal(plan);
+    for (key, name) in DATASHEET {
+        if let Some(datum) = plan.nominal.get(key) {
+            set(&mut params, name, datum.value * (datum.relative_std * noise.normal()).exp());
+        }
+    }
+    params
+}
+
+/// Adds what causes the gap; returns its label.
+fn add(truth: Truth, severity: f64, params: &mut Params, noise: &mut Noise) -> Json {
+    let Truth::Effect(effect) = truth else {
+        let effects: &[&str] = match truth {
+            Truth::Gain => &["x_gain"],
+            Truth::Clock => &["x_clock"],
+            _ => &[],
+        };
+        return json!({"effects": effects, "severity": 1.0 + severity});
+    };
+    let spec = &fit_specs()[effect];
+    let form = spec.forms.len() - 1;
+    let at = |(k, p): (usize, &crate::effects::FitParam)| {
+        let sign = if noise.uniform() < 0.5 { -1.0 } else { 1.0 };
+        let x = match (k, p.spread) {
+            (0, Spread::Absolute(_)) => sign * (0.6 + 0.5 * (severity + 0.5)),
+            (0, Spread::Log(_)) => severity,
+            _ => 0.6 * noise.normal(),
+        };
+        Coordinate { name: p.name, centre: p.centre, spread: p.spread }.value(x)
+    };
+    let values: Vec<f64> = spec.forms[form].params.iter().enumerate().map(at).collect();
+    spec.apply(form, &values, params);
+    json!({"effects": [spec.effect], "severity": 1.0 + severity, "form": spec.forms[form].name})
+}
+
+/// What is wrong with the measurement itself.
+fn distort(truth: Truth, severity: f64, record: &mut Record) {
+    let share = 1.0 + 0.04 * (1.0 + severity);
+    match truth {
+        Truth::Gain => {
+            if let Some(force) = record.channel[campaign::FRICTION].as_mut() {
+                force.iter_mut().for_each(|f| *f *= share);
+            }
+        }
+        Truth::Clock => {
+            for column in record.channel.iter_mut().flatten() {
+                *column = slowed(column, share);
+            }
+        }
+        Truth::None | Truth::Effect(_) => {}
+    }
+}
+
+/// The column as a clock sees it that is slow by the factor `share`; the end stands still.
+fn slowed(column: &[f64], share: f64) -> Vec<f64> {
+    let value = |i: usize| {
+        let at = i as f64 * share;
+        let k = (at as usize).min(column.len() - 1);
+        let next = (k + 1).min(column.len() - 1);
+        column[k] + (at - k as f64).min(1.0) * (column[next] - column[k])
+    };
+    (0..column.len()).map(value).collect()
+}
+
+/// Adds the noise of the channels.
+fn blur(plan: &Plan, record: &mut Record, noise: &mut Noise) {
+    for (column, std) in record.channel.iter_mut().zip(plan.noise) {
+        let (Some(column), Some(std)) = (column, std) else { continue };
+        column.iter_mut().for_each(|v| *v += std * noise.normal());
+    }
+    debug_assert_eq!(CHANNELS.len(), record.channel.len());
+}
