@@ -7,7 +7,8 @@ use std::time::Instant;
 use super::output::{self, Done, Stop};
 use crate::error::Fault;
 use crate::gap::diagnose::{self, Settings};
-use crate::gap::{json, predict, report, score};
+use crate::gap::hypotheses::Method;
+use crate::gap::{friction_fit, friction_record, json, predict, report, score, suite};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -15,6 +16,8 @@ Examples:
   tread gap predict out/campaign/diagnosis.json other/campaign.toml --model with-effect --out out/p
   tread gap export out/campaign/diagnosis.json --fmu out/Repaired.fmu
   tread gap score out labels.json
+  tread gap make-suite --count 16 --seed 7 --out out/own
+  tread gap friction record.csv
 
 Exit codes of diagnose:
   0   no gap that an effect would be needed for
@@ -46,6 +49,9 @@ enum Command {
         /// Seed of the bootstrap
         #[arg(long, default_value_t = 1)]
         seed: u64,
+        /// Leave a step of the method out, to see what it is worth; may be repeated
+        #[arg(long)]
+        without: Vec<Step>,
         /// No progress on the standard error
         #[arg(long, short)]
         quiet: bool,
@@ -83,6 +89,31 @@ enum Command {
         #[arg(long, short, default_value = "out/gap")]
         out: PathBuf,
     },
+    /// Make campaigns of the own simulator whose effect is known
+    MakeSuite {
+        /// Folder for the campaigns and labels.json
+        #[arg(long, short)]
+        out: PathBuf,
+        /// Campaign file to make them after; the project's own if not given
+        #[arg(long)]
+        template: Option<PathBuf>,
+        /// How many
+        #[arg(long, default_value_t = 16)]
+        count: usize,
+        /// Seed: the same one gives the same campaigns
+        #[arg(long, default_value_t = 1)]
+        seed: u64,
+    },
+    /// Say which effect explains a friction record without block dynamics
+    Friction {
+        /// CSV files: time_s with displacement_m and friction_coefficient, or with position_m, force_n
+        /// and pressure_pa
+        #[arg(required = true)]
+        records: Vec<PathBuf>,
+        /// All figures as JSON
+        #[arg(long)]
+        json: bool,
+    },
     /// Score answers against labels
     Score {
         /// Folder with ID/diagnosis.json or ID.json
@@ -93,6 +124,33 @@ enum Command {
         #[arg(long)]
         json: bool,
     },
+}
+
+/// A step of the method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Step {
+    /// Recalibration of the base model.
+    Recalibration,
+    /// The base model once more, from what the effects found.
+    EqualEffort,
+    /// All forms of an effect but the first.
+    Families,
+    /// Runs that no fit sees.
+    HoldOut,
+    /// What the data say without a model.
+    Symmetries,
+}
+
+/// The method without some steps.
+fn settings(seed: u64, without: &[Step]) -> Settings {
+    let kept = |step: Step| !without.contains(&step);
+    let method = Method {
+        recalibrate: kept(Step::Recalibration),
+        equal_effort: kept(Step::EqualEffort),
+        families: kept(Step::Families),
+        symmetries: kept(Step::Symmetries),
+    };
+    Settings { seed, method, hold_out: kept(Step::HoldOut) }
 }
 
 /// A model of a diagnosis.
@@ -119,10 +177,14 @@ impl Model {
 /// Does what was typed.
 pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     match &arguments.command {
-        Command::Diagnose { campaign, out, jobs, seed, quiet } => {
-            let settings = Settings { seed: *seed, ..Settings::default() };
-            return run_diagnose(campaign, out, *jobs, settings, *quiet);
+        Command::Diagnose { campaign, out, jobs, seed, without, quiet } => {
+            return run_diagnose(campaign, out, *jobs, settings(*seed, without), *quiet);
         }
+        Command::MakeSuite { out, template, count, seed } => {
+            suite::make(template.as_deref(), out, *count, *seed)?;
+            eprintln!("{count} campaigns in {}", out.display());
+        }
+        Command::Friction { records, json } => return friction(records, *json),
         Command::Predict { diagnosis, campaign, model, out } => {
             let count = predict::predict(diagnosis, campaign, model.name(), out)?;
             eprintln!("{count} runs written to {}", out.display());
@@ -203,6 +265,32 @@ fn run_diagnose(
     output::to(Some(&out.join("report.html")), page.as_bytes())?;
     output::to_stdout(format!("{}\n", diagnose::verdict(&diagnosis)).as_bytes())?;
     Ok(Done::Code(diagnosis.decision.kind.exit_code()))
+}
+
+/// Every record on its own; one that cannot be used is told and does not stop the others.
+fn friction(records: &[PathBuf], json: bool) -> Result<Done, Stop> {
+    let (mut text, mut all, mut failed) = (String::new(), Vec::new(), None);
+    for path in records {
+        match friction_record::read(path) {
+            Ok(record) => {
+                let verdict = friction_fit::explain(&record);
+                text.push_str(&friction_fit::table(&record, &verdict));
+                all.push(friction_fit::document(&record, &verdict));
+            }
+            Err(fault) => {
+                eprintln!("{fault}");
+                failed = Some(fault);
+            }
+        }
+    }
+    if json {
+        text = serde_json::to_string_pretty(&all).unwrap_or_default() + "\n";
+    }
+    output::to_stdout(text.as_bytes())?;
+    match failed {
+        Some(_) => Ok(Done::Code(2)),
+        None => Ok(Done::Fine),
+    }
 }
 
 /// The FMU as `tread fmu build` packs it, with the fitted values in its resources.

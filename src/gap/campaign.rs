@@ -177,7 +177,16 @@ pub fn read_plan(path: &Path) -> Result<Plan, Fault> {
     let shown = path.display().to_string();
     let text = std::fs::read_to_string(path)
         .map_err(|e| Fault::File { path: shown.clone(), reason: e.to_string() })?;
-    let file: PlanFile = toml::from_str(&text)
+    parse_plan(&text, &shown)
+}
+
+/// The same from the text of a campaign file; `shown` names it.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn parse_plan(text: &str, shown: &str) -> Result<Plan, Fault> {
+    let shown = shown.to_string();
+    let file: PlanFile = toml::from_str(text)
         .map_err(|e| Fault::File { path: shown, reason: e.to_string().trim().to_string() })?;
     let mut problems = Vec::new();
     if file.format != "tread-block-campaign/1" {

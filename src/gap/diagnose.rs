@@ -112,7 +112,10 @@ pub fn diagnose(
     let held = if settings.hold_out { held_out::choose(&bench.runs) } else { Vec::new() };
     let seen = held_out::to_fit(&bench.runs, &held);
     progress(0.0, "recalibrating the base model");
-    let findings = symmetry::findings(&campaign);
+    let mut findings = symmetry::findings(&campaign);
+    if !settings.method.symmetries {
+        findings.clear();
+    }
     let mut guess =
         Guess { base: vec![0.0; bench.base_size()], level: 1.0, effects: Vec::new(), findings: findings.clone() };
     if settings.method.recalibrate {

@@ -72,11 +72,13 @@ pub struct Method {
     pub equal_effort: bool,
     /// Try all forms of an effect, not only the first.
     pub families: bool,
+    /// Listen to what the data say without any model.
+    pub symmetries: bool,
 }
 
 impl Method {
     /// Everything.
-    pub const FULL: Self = Self { recalibrate: true, equal_effort: true, families: true };
+    pub const FULL: Self = Self { recalibrate: true, equal_effort: true, families: true, symmetries: true };
 }
 
 const fn effort(steps: usize, refresh: usize, heat: f64, onset_parts: Option<usize>) -> Effort {
@@ -182,6 +184,10 @@ pub fn fit_all(
         progress(0.8, &format!("recalibrated: {}", left(&base)));
     }
     let pairs = pairs(bench, &singles, &guess.findings, of, method, progress);
+    if let Some(pair) = pairs.first() {
+        progress(0.94, "the best effect once more, from what its pair found");
+        alone(bench, pair, &mut singles, of);
+    }
     progress(0.95, "fitted");
     let findings = guess.findings.clone();
     Ok(Fits { base: level(bench, base, of), singles, pairs, response, findings })
@@ -404,6 +410,19 @@ fn again(
         base.jacobian = Some(full_jacobian(bench, &base, of));
     }
     base
+}
+
+/// The first effect of a pair from where the pair has left the block: a pair must not take credit
+/// for an optimum that its first effect alone has missed.
+fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis], of: &[usize]) {
+    let added = vec![pair.added[0]];
+    let x = pair.fit.x[..bench.coordinates(&added).len()].to_vec();
+    let fit = approach(bench, evaluate(bench, &added, x, of), of, &FINE);
+    for single in singles.iter_mut().filter(|s| s.added[0].effect == added[0].effect) {
+        if fit.objective < single.fit.objective {
+            *single = level(bench, fit.clone(), of);
+        }
+    }
 }
 
 /// The best effect with every other that the symmetries allow beside it, then once more the best

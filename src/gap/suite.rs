@@ -54,9 +54,14 @@ fn truth(number: usize) -> Truth {
 ///
 /// # Errors
 /// Files that cannot be written, and what stops the block.
-pub fn make(template: &Path, out: &Path, count: usize, seed: u64) -> Result<(), Fault> {
-    let plan = campaign::read_plan(template)?;
-    let text = std::fs::read_to_string(template).map_err(|e| file_fault(template, &e))?;
+pub fn make(template: Option<&Path>, out: &Path, count: usize, seed: u64) -> Result<(), Fault> {
+    let (plan, text) = match template {
+        Some(path) => {
+            let text = std::fs::read_to_string(path).map_err(|e| file_fault(path, &e))?;
+            (campaign::read_plan(path)?, text)
+        }
+        None => (campaign::parse_plan(TEMPLATE, "the project's own template")?, TEMPLATE.to_string()),
+    };
     let labels: Result<Vec<(String, Json)>, Fault> = (0..count)
         .into_par_iter()
         .map(|number| one(&plan, &text, out, number, seed))
