@@ -8,7 +8,9 @@ use super::output::{self, Done, Stop};
 use crate::error::Fault;
 use crate::gap::diagnose::{self, Settings};
 use crate::gap::hypotheses::Method;
-use crate::gap::{friction_fit, friction_record, json, predict, report, score, suite};
+use crate::gap::{
+    campaign, friction_fit, friction_record, json, packed, predict, report, score, suite, verify,
+};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -83,7 +85,7 @@ enum Command {
     /// Diagnose all campaigns of a folder and score those that labels.json knows
     Check {
         /// Folder of campaigns, with labels.json or without
-        #[arg(default_value = "shared/measurements/open")]
+        #[arg(default_value = "tests/data/campaigns/open")]
         folder: PathBuf,
         /// Folder for the answers
         #[arg(long, short, default_value = "out/gap")]
@@ -104,6 +106,15 @@ enum Command {
         #[arg(long, default_value_t = 1)]
         seed: u64,
     },
+    /// Pack campaigns into one zip each; diagnose and check read them as they read folders
+    Pack {
+        /// Folders of campaigns
+        #[arg(required = true)]
+        campaigns: Vec<PathBuf>,
+        /// Folder for the zips
+        #[arg(long, short)]
+        out: PathBuf,
+    },
     /// Say which effect explains a friction record without block dynamics
     Friction {
         /// CSV files: time_s with displacement_m and friction_coefficient, or with position_m, force_n
@@ -120,6 +131,9 @@ enum Command {
         answers: PathBuf,
         /// The labels
         labels: PathBuf,
+        /// Folder with further runs of the same blocks, to check the closed fractions on
+        #[arg(long)]
+        held_out: Option<PathBuf>,
         /// All figures as JSON
         #[arg(long)]
         json: bool,
@@ -184,6 +198,7 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
             suite::make(template.as_deref(), out, *count, *seed)?;
             eprintln!("{count} campaigns in {}", out.display());
         }
+        Command::Pack { campaigns, out } => pack(campaigns, out)?,
         Command::Friction { records, json } => return friction(records, *json),
         Command::Predict { diagnosis, campaign, model, out } => {
             let count = predict::predict(diagnosis, campaign, model.name(), out)?;
@@ -191,7 +206,12 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
         }
         Command::Export { diagnosis, fmu, model } => export(diagnosis, fmu, *model)?,
         Command::Check { folder, out } => check(folder, out)?,
-        Command::Score { answers, labels, json } => tell_score(answers, labels, *json)?,
+        Command::Score { answers, labels, held_out, json } => {
+            tell_score(answers, labels, *json)?;
+            if let Some(further) = held_out {
+                tell_closed(answers, labels, further)?;
+            }
+        }
     }
     Ok(Done::Fine)
 }
@@ -203,6 +223,20 @@ fn tell_score(answers: &Path, labels: &Path, json: bool) -> Result<(), Stop> {
     output::to_stdout(format!("{table}{figures}\n").as_bytes())
 }
 
+fn tell_closed(answers: &Path, labels: &Path, further: &Path) -> Result<(), Stop> {
+    let mut all = Vec::new();
+    for case in score::cases(answers, labels)? {
+        let packed = further.join(format!("{}.zip", case.id));
+        let campaign = if packed.exists() { packed } else { further.join(&case.id) };
+        // Where nothing was named, nothing was promised.
+        if campaign.exists() && case.kind == "named" {
+            let answer = score::answer_path(answers, &case.id);
+            all.push(verify::closed(&case.id, &answer, &campaign)?);
+        }
+    }
+    output::to_stdout(verify::table(&all).as_bytes())
+}
+
 /// One campaign after the other; one that cannot be used is told and does not stop the others.
 fn check(folder: &Path, out: &Path) -> Result<(), Stop> {
     let entries = std::fs::read_dir(folder).map_err(|e| Fault::File {
@@ -210,10 +244,12 @@ fn check(folder: &Path, out: &Path) -> Result<(), Stop> {
         reason: format!("{e}; name the folder of the campaigns"),
     })?;
     let mut campaigns: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    campaigns.retain(|path| path.join("campaign.toml").exists());
+    campaigns.retain(|path| {
+        path.join("campaign.toml").exists() || path.extension().is_some_and(|e| e == "zip")
+    });
     campaigns.sort();
     for campaign in &campaigns {
-        let name = campaign.file_name().unwrap_or_default();
+        let name = campaign.file_stem().unwrap_or_default();
         eprintln!("{}", name.to_string_lossy());
         match run_diagnose(campaign, &out.join(name), 0, Settings::default(), true) {
             Err(Stop::Fault(fault)) => eprintln!("{fault}"),
@@ -265,6 +301,17 @@ fn run_diagnose(
     output::to(Some(&out.join("report.html")), page.as_bytes())?;
     output::to_stdout(format!("{}\n", diagnose::verdict(&diagnosis)).as_bytes())?;
     Ok(Done::Code(diagnosis.decision.kind.exit_code()))
+}
+
+fn pack(campaigns: &[PathBuf], out: &Path) -> Result<(), Stop> {
+    for folder in campaigns {
+        let plan = campaign::read_plan(&folder.join("campaign.toml"))?;
+        let mut names = vec!["campaign.toml".to_string()];
+        names.extend(plan.runs.iter().map(|r| r.file.clone()));
+        let name = format!("{}.zip", folder.file_name().unwrap_or_default().to_string_lossy());
+        output::to(Some(&out.join(name)), &packed::pack(folder, &names)?)?;
+    }
+    Ok(())
 }
 
 /// Every record on its own; one that cannot be used is told and does not stop the others.

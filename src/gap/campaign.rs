@@ -1,5 +1,6 @@
 //! A measured campaign: `campaign.toml` and one CSV per run.
 
+use super::packed::Source;
 use super::quality;
 use crate::error::{Fault, Problem};
 use serde::Deserialize;
@@ -228,15 +229,24 @@ fn number(value: &toml::Value) -> Option<f64> {
 }
 
 impl Campaign {
-    /// Reads a campaign's folder; what can be worked around becomes a warning.
+    /// Reads a campaign's folder, or its zip made by `tread gap pack`; what can be worked around becomes a warning.
     ///
     /// # Errors
     /// A campaign file that cannot be read, or data from which nothing can be concluded.
     pub fn load(folder: &Path) -> Result<Self, Fault> {
-        let plan = read_plan(&folder.join("campaign.toml"))?;
+        let source = Source::open(folder)?;
+        let shown = folder.join("campaign.toml").display().to_string();
+        let plan = match &source {
+            Source::Folder(folder) => read_plan(&folder.join("campaign.toml"))?,
+            Source::Packed(_) => {
+                let unread = |reason| Fault::File { path: shown.clone(), reason };
+                let bytes = source.bytes("campaign.toml").map_err(unread)?;
+                parse_plan(&String::from_utf8_lossy(&bytes), &shown)?
+            }
+        };
         let (mut runs, mut warnings) = (Vec::new(), Vec::new());
         for spec in &plan.runs {
-            match read_record(&folder.join(&spec.file), &plan, spec, &mut warnings) {
+            match read_record(&source, &plan, spec, &mut warnings) {
                 Ok((record, hash)) => runs.push(Run { spec: spec.clone(), record, hash }),
                 Err(problem) => warnings.push(problem),
             }
@@ -261,7 +271,7 @@ fn hash_step(start: u64, bytes: &[u8]) -> u64 {
 }
 
 fn read_record(
-    path: &Path,
+    source: &Source,
     plan: &Plan,
     spec: &RunSpec,
     warnings: &mut Vec<Problem>,
@@ -274,7 +284,7 @@ fn read_record(
             "the run is left out; restore its file",
         )
     };
-    let bytes = std::fs::read(path).map_err(|e| unreadable(e.to_string()))?;
+    let bytes = source.bytes(&spec.file).map_err(unreadable)?;
     let mut reader =
         csv::ReaderBuilder::new().flexible(true).trim(csv::Trim::All).from_reader(bytes.as_slice());
     let header = reader.headers().map_err(|e| unreadable(e.to_string()))?.clone();

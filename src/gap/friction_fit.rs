@@ -6,8 +6,8 @@ use nalgebra::{DMatrix, DVector};
 
 /// Lengths and times that are tried, as a share of the longest stroke: from the first samples to it.
 const SHARES: [f64; 9] = [0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.2, 0.4, 0.8];
-/// Nats per unit of ln(held-out mean square): samples of one stroke err together, so strokes count.
-const NATS_PER_PIECE: f64 = 1.0;
+/// Independent comparisons per held-out piece: samples of one stroke err together, its quarters do not.
+const NATS_PER_PIECE: f64 = 4.0;
 /// Pieces into which a record without strokes is cut, each side of the step.
 const PIECES: usize = 8;
 /// Share of the variance that a law may leave and still be called adequate, where repeated strokes say
@@ -19,9 +19,11 @@ const ADEQUATE: f64 = 0.1;
 pub enum Law {
     /// Constant friction: nothing is missing.
     Constant,
-    /// Friction that follows the logarithm of the speed at once: the base model has it, so it is
-    /// recalibration and not an effect.
+    /// Friction that follows the logarithm of the speed as soon as the rig has stretched: the base
+    /// model has it, so it is recalibration and not an effect.
     Speed,
+    /// Friction that builds up over a length after a change of direction: something gives way.
+    RigCompliance,
     /// Friction that remembers the slip since the last change: rate and state.
     FrictionAgeing,
     /// Friction that follows the friction power over a time.
@@ -36,9 +38,10 @@ pub enum Law {
 
 impl Law {
     /// All.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Constant,
         Self::Speed,
+        Self::RigCompliance,
         Self::FrictionAgeing,
         Self::ThermalFriction,
         Self::Adhesion,
@@ -51,6 +54,7 @@ impl Law {
         match self {
             Self::Constant => "none",
             Self::Speed => "recalibration (speed)",
+            Self::RigCompliance => "rig_compliance",
             Self::FrictionAgeing => "friction_ageing",
             Self::ThermalFriction => "thermal_friction",
             Self::Adhesion => "adhesion",
@@ -71,6 +75,8 @@ pub struct Fitted {
     pub fitted: f64,
     /// Length [m] or time [s] of its memory, if it has one.
     pub memory: Option<f64>,
+    /// Length [m] over which a change of the speed arrives, where the speed is stepped.
+    pub stretch: f64,
     /// Coefficients with standard deviations: name, value, deviation.
     pub coefficients: Vec<(&'static str, f64, f64)>,
     /// Probability among the laws.
@@ -159,27 +165,47 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-/// The law with the memory that does best where it is fitted.
+/// The law with the memory and the stretch that do best where it is fitted.
 fn best(record: &FrictionRecord, law: Law, pieces: &[usize]) -> Option<Fitted> {
-    let longest = match law {
-        Law::FrictionAgeing => record.since.iter().copied().fold(0.0, f64::max),
-        Law::ThermalFriction => record.since_time.iter().copied().fold(0.0, f64::max),
+    let slip = record.since.iter().copied().fold(0.0, f64::max);
+    let time = record.since_time.iter().copied().fold(0.0, f64::max);
+    let memories: Vec<Option<f64>> = match law {
+        Law::FrictionAgeing => SHARES.iter().map(|s| Some(s * slip)).collect(),
+        Law::RigCompliance if record.piston => SHARES.iter().map(|s| Some(s * slip)).collect(),
+        Law::ThermalFriction => SHARES.iter().map(|s| Some(s * time)).collect(),
+        Law::RigCompliance => return None,
         Law::Adhesion if record.pressure.is_none() => return None,
-        _ => return one(record, law, None, pieces),
+        _ => vec![None],
     };
-    SHARES
-        .iter()
-        .filter_map(|share| one(record, law, Some(share * longest), pieces))
+    let stretches: Vec<f64> = if record.piston {
+        vec![0.0]
+    } else {
+        SHARES.iter().map(|s| s * slip).collect()
+    };
+    let all = memories.iter().flat_map(|m| stretches.iter().map(move |s| (*m, *s)));
+    all.filter_map(|(memory, stretch)| one(record, law, memory, stretch, pieces))
+        .filter(|fitted| of_right_sign(fitted))
         .min_by(|a, b| a.fitted.total_cmp(&b.fitted))
+}
+
+/// Old contacts rub more, warm ones less, and what gives way shows less friction at first.
+fn of_right_sign(fitted: &Fitted) -> bool {
+    let Some((_, last, _)) = fitted.coefficients.last() else { return false };
+    match fitted.law {
+        Law::FrictionAgeing => *last > 0.0,
+        Law::RigCompliance | Law::ThermalFriction => *last < 0.0,
+        _ => true,
+    }
 }
 
 fn one(
     record: &FrictionRecord,
     law: Law,
     memory: Option<f64>,
+    stretch: f64,
     pieces: &[usize],
 ) -> Option<Fitted> {
-    let (names, rows) = design(record, law, memory);
+    let (names, rows) = design(record, law, memory, stretch);
     let fit: Vec<usize> = (0..pieces.len()).filter(|i| pieces[*i] % 2 == 0).collect();
     let judge: Vec<usize> = (0..pieces.len()).filter(|i| pieces[*i] % 2 == 1).collect();
     if fit.len() <= names.len() || judge.is_empty() {
@@ -220,6 +246,7 @@ fn one(
         held_out: error(&judge),
         fitted,
         memory,
+        stretch,
         coefficients,
         probability: 0.0,
         closed: 0.0,
@@ -231,9 +258,10 @@ fn design(
     record: &FrictionRecord,
     law: Law,
     memory: Option<f64>,
+    stretch: f64,
 ) -> (Vec<&'static str>, Vec<Vec<f64>>) {
     let mean = |c: &[f64]| c.iter().sum::<f64>() / c.len().max(1) as f64;
-    let speed = mean(&record.speed);
+    let arrived = arrived(record, stretch);
     let place = mean(&record.place);
     let load = record.pressure.as_ref().map_or(1.0, |p| mean(p));
     let mut names = vec!["friction"];
@@ -245,7 +273,8 @@ fn design(
     }
     match law {
         Law::Constant | Law::Speed => {}
-        Law::FrictionAgeing => names.push("change at a fresh contact"),
+        Law::RigCompliance => names.push("change at a reversal"),
+        Law::FrictionAgeing => names.push("change where contacts are old"),
         Law::ThermalFriction => names.push("change when warm"),
         Law::Adhesion => names.push("change with the load, relative"),
         Law::Misalignment => names.push("change per metre of the way"),
@@ -259,14 +288,26 @@ fn design(
             if record.piston {
                 row.push(pressure.unwrap_or(0.0));
             }
-            let fast = (record.speed[i] / speed).ln();
+            let fast = arrived[i];
             if law != Law::Constant {
                 row.push(sign * fast);
             }
+            // Contacts are as old as the change left them; before a step nothing has changed.
+            let old = |i: usize, kept: f64| {
+                if record.piston {
+                    kept
+                } else if record.stroke[i] == 0 {
+                    0.0
+                } else {
+                    kept * arrival(record.since[i], stretch)
+                }
+            };
             let kept = |x: f64| (-x / memory.unwrap_or(1.0)).exp();
             match law {
                 Law::Constant | Law::Speed => {}
-                Law::FrictionAgeing => row.push(sign * kept(record.since[i])),
+                Law::RigCompliance => row.push(sign * kept(record.since[i])),
+                Law::FrictionAgeing => row.push(sign * old(i, kept(record.since[i]))),
+                Law::ThermalFriction if !record.piston && record.stroke[i] == 0 => row.push(0.0),
                 Law::ThermalFriction => row.push(sign * (1.0 - kept(record.since_time[i]))),
                 Law::Adhesion => row.push(sign * (pressure.unwrap_or(load) / load - 1.0)),
                 Law::Misalignment => row.push(sign * (record.place[i] - place)),
@@ -293,13 +334,18 @@ pub fn table(record: &FrictionRecord, verdict: &Verdict) -> String {
             Law::ThermalFriction => format!(", over {m:.3e} s"),
             _ => format!(", over {m:.3e} m"),
         });
+        let stretch = if law.stretch > 0.0 {
+            format!(", speed arrives over {:.2e} m", law.stretch)
+        } else {
+            String::new()
+        };
         let told: Vec<String> = law
             .coefficients
             .iter()
             .map(|(name, value, deviation)| format!("{name} {value:.4e} ± {deviation:.1e}"))
             .collect();
         out.push_str(&format!(
-            "  {:<24} P {:.2}  held-out error {:.3e} {unit}  closes {:>4.0} %  {}{memory}\n",
+            "  {:<24} P {:.2}  held-out error {:.3e} {unit}  closes {:>4.0} %  {}{memory}{stretch}\n",
             law.law.name(),
             law.probability,
             law.held_out,
@@ -331,6 +377,7 @@ pub fn document(record: &FrictionRecord, verdict: &Verdict) -> serde_json::Value
             "held_out_error": l.held_out,
             "closed_fraction": l.closed,
             "memory": l.memory,
+            "stretch": l.stretch,
             "coefficients": l.coefficients.iter().map(|(name, value, deviation)| {
                 serde_json::json!({"name": name, "value": value, "std": deviation})
             }).collect::<Vec<_>>(),
@@ -338,8 +385,42 @@ pub fn document(record: &FrictionRecord, verdict: &Verdict) -> serde_json::Value
     })
 }
 
+/// Share of a change that has arrived after the slip `x`.
+fn arrival(x: f64, stretch: f64) -> f64 {
+    if stretch > 0.0 {
+        1.0 - (-x / stretch).exp()
+    } else {
+        1.0
+    }
+}
+
+/// Logarithm of the sliding speed over its mean; where it is stepped, the two speeds' with the rig
+/// stretching in between.
+fn arrived(record: &FrictionRecord, stretch: f64) -> Vec<f64> {
+    let count = record.speed.len();
+    let mean = record.speed.iter().map(|v| v.ln()).sum::<f64>() / count.max(1) as f64;
+    if record.piston {
+        return record.speed.iter().map(|v| v.ln() - mean).collect();
+    }
+    let of = |stroke: usize| {
+        let mut speeds: Vec<f64> =
+            (0..count).filter(|i| record.stroke[*i] == stroke).map(|i| record.speed[i]).collect();
+        speeds.sort_by(f64::total_cmp);
+        speeds.get(speeds.len() / 2).map_or(mean, |v| v.ln())
+    };
+    let last = record.stroke.last().copied().unwrap_or(0);
+    let speeds: Vec<f64> = (0..=last).map(of).collect();
+    (0..count)
+        .map(|i| {
+            let k = record.stroke[i];
+            let before = speeds[k.saturating_sub(1)];
+            before + (speeds[k] - before) * arrival(record.since[i], stretch) - speeds[0]
+        })
+        .collect()
+}
+
 fn by_quarter(record: &FrictionRecord, law: &Fitted) -> [f64; 4] {
-    let (_, rows) = design(record, law.law, law.memory);
+    let (_, rows) = design(record, law.law, law.memory, law.stretch);
     let longest = record.since.iter().copied().fold(1e-300, f64::max);
     let (mut sum, mut count) = ([0.0; 4], [0.0; 4]);
     for (i, row) in rows.iter().enumerate() {

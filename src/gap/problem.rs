@@ -272,6 +272,16 @@ impl Bench {
         Ok(())
     }
 
+    /// Residuals of the runs `of` (all others empty) for whole parameters.
+    pub fn residuals_of(&self, params: &Params, of: &[usize]) -> Residuals {
+        let done: Vec<Vec<f64>> = of.par_iter().map(|r| self.residual(params, *r)).collect();
+        let mut out = vec![Vec::new(); self.runs.len()];
+        for (r, values) in of.iter().zip(done) {
+            out[*r] = values;
+        }
+        out
+    }
+
     fn residual(&self, params: &Params, run: usize) -> Vec<f64> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
         let spec = &self.runs[run];

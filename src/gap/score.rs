@@ -3,7 +3,7 @@
 use crate::error::Fault;
 use serde_json::{json, Value as Json};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// One answer beside its label.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +64,16 @@ fn read(path: &Path) -> Result<Json, Fault> {
     serde_json::from_str(&text).map_err(|e| fault(e.to_string()))
 }
 
+/// Where the answer to a campaign is: ID/diagnosis.json, or ID.json.
+pub fn answer_path(answers: &Path, id: &str) -> PathBuf {
+    let folder = answers.join(id).join("diagnosis.json");
+    if folder.exists() {
+        folder
+    } else {
+        answers.join(format!("{id}.json"))
+    }
+}
+
 /// Reads `labels` and the answers ID/diagnosis.json or ID.json in `answers`; campaigns without an
 /// answer are left out.
 ///
@@ -73,8 +83,7 @@ pub fn cases(answers: &Path, labels: &Path) -> Result<Vec<Case>, Fault> {
     let labels = read(labels)?;
     let mut out = Vec::new();
     for (id, label) in labels.as_object().into_iter().flatten() {
-        let folder = answers.join(id).join("diagnosis.json");
-        let path = if folder.exists() { folder } else { answers.join(format!("{id}.json")) };
+        let path = answer_path(answers, id);
         if path.exists() {
             out.push(case(id, label, &read(&path)?));
         }
