@@ -56,7 +56,10 @@ impl Unpacked {
     fn told(&self, run: &str, word: &str) {
         let warnings = self.load().unwrap().warnings;
         let texts: Vec<String> = warnings.iter().map(ToString::to_string).collect();
-        assert!(texts.iter().any(|t| t.contains(run) && t.contains(word)), "{run}, {word}: {texts:?}");
+        assert!(
+            texts.iter().any(|t| t.contains(run) && t.contains(word)),
+            "{run}, {word}: {texts:?}"
+        );
     }
 }
 
@@ -77,7 +80,11 @@ fn a_good_campaign_has_nothing_to_complain_of() {
 fn cells_that_are_no_numbers_take_the_channel_out_and_are_told() {
     let made = Unpacked::new("nan");
     made.change("03-v300.csv", "friction_force_n", |row, v| {
-        if row > 200 { "NaN".into() } else { v.to_string() }
+        if row > 200 {
+            "NaN".into()
+        } else {
+            v.to_string()
+        }
     });
     made.told("03-v300", "no numbers");
 }
@@ -144,7 +151,8 @@ fn two_runs_that_are_the_same_file_are_told() {
 #[test]
 fn a_campaign_of_three_runs_decides_nothing() {
     let made = Unpacked::new("small");
-    for run in ["04-v450", "05-v600", "06-p012", "07-p040", "08-p060", "09-slow-p040", "10-ramp-up"] {
+    for run in ["04-v450", "05-v600", "06-p012", "07-p040", "08-p060", "09-slow-p040", "10-ramp-up"]
+    {
         std::fs::remove_file(made.0.join(format!("runs/{run}.csv"))).unwrap();
     }
     for run in ["11-ramp-down", "12-reverse-v300", "13-dwell", "14-no-dwell", "15-repeat-v300"] {
@@ -173,7 +181,8 @@ fn rules_break_in_the_campaigns_whose_labels_break_them_and_in_no_other() {
             if finding.rule == Rule::Kinematics {
                 continue;
             }
-            let expected = effects.iter().any(|e| breaks(finding.rule).contains(&e.as_str().unwrap()));
+            let expected =
+                effects.iter().any(|e| breaks(finding.rule).contains(&e.as_str().unwrap()));
             assert_eq!(finding.broken, expected, "open-{number:02}: {}", finding.text);
         }
     }

@@ -9,7 +9,8 @@ use crate::error::Fault;
 use crate::gap::diagnose::{self, Settings};
 use crate::gap::hypotheses::Method;
 use crate::gap::{
-    campaign, friction_fit, friction_record, json, packed, predict, report, score, suite, verify,
+    campaign, friction_fit, friction_record, friction_told, json, packed, predict, report, score,
+    suite, verify,
 };
 
 const EXAMPLES: &str = "\
@@ -321,8 +322,8 @@ fn friction(records: &[PathBuf], json: bool) -> Result<Done, Stop> {
         match friction_record::read(path) {
             Ok(record) => {
                 let verdict = friction_fit::explain(&record);
-                text.push_str(&friction_fit::table(&record, &verdict));
-                all.push(friction_fit::document(&record, &verdict));
+                text.push_str(&friction_told::table(&record, &verdict));
+                all.push(friction_told::document(&record, &verdict));
             }
             Err(fault) => {
                 eprintln!("{fault}");

@@ -1,8 +1,8 @@
 //! From fits to probabilities and a decision.
 
 use super::calibration::{
-    BLUR, CLASS_FROM, CLASS_SIZE, NAME_FROM, NO_GAP, PRIOR_NONE, PRIOR_PAIR, PRIOR_UNKNOWN,
-    CONTRADICTION, GOOD, INADEQUATE, KNOWN_BREAKER, SHARPNESS, TEXTURE_ALLOWANCE, UNKNOWN_LEAVES,
+    BLUR, CLASS_FROM, CLASS_SIZE, CONTRADICTION, GOOD, INADEQUATE, KNOWN_BREAKER, NAME_FROM,
+    NO_GAP, PRIOR_NONE, PRIOR_PAIR, PRIOR_UNKNOWN, SHARPNESS, TEXTURE_ALLOWANCE, UNKNOWN_LEAVES,
 };
 use super::hypotheses::{Fits, Hypothesis};
 use super::problem::Bench;
@@ -226,7 +226,13 @@ mod tests {
 
     fn fits(base: f64, singles: &[f64]) -> Fits {
         let singles = singles.iter().map(|l| at(*l)).collect();
-        Fits { base: at(base), singles, pairs: Vec::new(), response: Vec::new(), findings: Vec::new() }
+        Fits {
+            base: at(base),
+            singles,
+            pairs: Vec::new(),
+            response: Vec::new(),
+            findings: Vec::new(),
+        }
     }
 
     #[test]

@@ -5,8 +5,9 @@ use super::campaign::{Campaign, RunKind, RunSpec};
 use super::decide::{self, Cause, Decision, Kind, Weighed};
 use super::features;
 use super::fit::evaluate;
+use super::guess::{self, Guess};
 use super::held_out;
-use super::hypotheses::{self, Fits, Guess, Hypothesis, Method};
+use super::hypotheses::{self, Fits, Hypothesis, Method};
 use super::problem::{loss, Bench, Look, Residuals};
 use super::symmetry;
 use super::where_::{self, Cell};
@@ -116,11 +117,15 @@ pub fn diagnose(
     if !settings.method.symmetries {
         findings.clear();
     }
-    let mut guess =
-        Guess { base: vec![0.0; bench.base_size()], level: 1.0, effects: Vec::new(), findings: findings.clone() };
+    let mut guess = Guess {
+        base: vec![0.0; bench.base_size()],
+        level: 1.0,
+        effects: Vec::new(),
+        findings: findings.clone(),
+    };
     if settings.method.recalibrate {
         let mut first = Bench::new(&campaign, bench.specs, Look::Start)?;
-        guess = hypotheses::first_guess(&mut first, findings, &seen, settings.method, progress)?;
+        guess = guess::first_guess(&mut first, findings, &seen, settings.method, progress)?;
     }
     let fits = hypotheses::fit_all(&mut bench, &guess, &seen, settings.method, progress)?;
     let weighed = decide::weigh(&fits);

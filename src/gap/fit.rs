@@ -124,7 +124,8 @@ pub struct Noise(u64);
 impl Noise {
     /// A sequence of its own for every seed.
     pub fn new(seed: u64) -> Self {
-        let mut noise = Self((seed ^ 0x5eed_0123_4567_89ab).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
+        let mut noise =
+            Self((seed ^ 0x5eed_0123_4567_89ab).wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1);
         (0..8).for_each(|_| _ = noise.uniform());
         noise
     }

@@ -71,7 +71,8 @@ mod tests {
     #[test]
     fn a_measured_error_of_the_mesh_is_shared_with_the_neighbours() {
         let key = |part| Key { run: 0, channel: 0, aspect: Aspect::Onset, part };
-        let feature = |part| Feature { key: key(part), value: 0.0, noise: 0.0, scale: 0.0, size: 0.0 };
+        let feature =
+            |part| Feature { key: key(part), value: 0.0, noise: 0.0, scale: 0.0, size: 0.0 };
         let sigma = measured(&[feature(0), feature(0), feature(1)], &[2.0, 0.0, 0.0]);
         // Mean square 2 of the cell: sqrt(0.5·4 + 0.5·2) and sqrt(0.5·2), times 1.5.
         assert!((sigma[0] - 1.5 * 3.0_f64.sqrt()).abs() < 1e-12);

@@ -1,6 +1,7 @@
 //! Which effect explains a friction record: laws that are linear but for one length or time, fitted on
 //! some strokes and judged on others.
 
+use super::friction_design::design;
 use super::friction_record::FrictionRecord;
 use nalgebra::{DMatrix, DVector};
 
@@ -125,7 +126,8 @@ pub fn explain(record: &FrictionRecord) -> Verdict {
     laws.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     let spread = deviation(&record.value);
     let remainder = laws.first().is_some_and(|l| {
-        l.held_out > 3.0 * noise && l.held_out.powi(2) > ADEQUATE * spread.powi(2).min(before.powi(2))
+        l.held_out > 3.0 * noise
+            && l.held_out.powi(2) > ADEQUATE * spread.powi(2).min(before.powi(2))
     });
     let quarters = laws.first().map_or([0.0; 4], |l| by_quarter(record, l));
     Verdict { laws, noise, remainder, quarters }
@@ -145,7 +147,9 @@ fn pieces(record: &FrictionRecord) -> Vec<usize> {
         let last = record.stroke.partition_point(|s| *s <= record.stroke[i]);
         // After a change things happen at once: pieces of equal share of the logarithm.
         let at = ((i - first) as f64 + 1.0).ln() / ((last - first) as f64 + 1.0).ln();
-        out.push(2 * PIECES * record.stroke[i] + (at * (2 * PIECES) as f64) as usize % (2 * PIECES));
+        out.push(
+            2 * PIECES * record.stroke[i] + (at * (2 * PIECES) as f64) as usize % (2 * PIECES),
+        );
     }
     out
 }
@@ -177,11 +181,8 @@ fn best(record: &FrictionRecord, law: Law, pieces: &[usize]) -> Option<Fitted> {
         Law::Adhesion if record.pressure.is_none() => return None,
         _ => vec![None],
     };
-    let stretches: Vec<f64> = if record.piston {
-        vec![0.0]
-    } else {
-        SHARES.iter().map(|s| s * slip).collect()
-    };
+    let stretches: Vec<f64> =
+        if record.piston { vec![0.0] } else { SHARES.iter().map(|s| s * slip).collect() };
     let all = memories.iter().flat_map(|m| stretches.iter().map(move |s| (*m, *s)));
     all.filter_map(|(memory, stretch)| one(record, law, memory, stretch, pieces))
         .filter(|fitted| of_right_sign(fitted))
@@ -251,172 +252,6 @@ fn one(
         probability: 0.0,
         closed: 0.0,
     })
-}
-
-/// Names of the coefficients, and their factors sample by sample.
-fn design(
-    record: &FrictionRecord,
-    law: Law,
-    memory: Option<f64>,
-    stretch: f64,
-) -> (Vec<&'static str>, Vec<Vec<f64>>) {
-    let mean = |c: &[f64]| c.iter().sum::<f64>() / c.len().max(1) as f64;
-    let arrived = arrived(record, stretch);
-    let place = mean(&record.place);
-    let load = record.pressure.as_ref().map_or(1.0, |p| mean(p));
-    let mut names = vec!["friction"];
-    if record.piston {
-        names.push("area [m²]");
-    }
-    if law != Law::Constant {
-        names.push("change per e-fold of speed");
-    }
-    match law {
-        Law::Constant | Law::Speed => {}
-        Law::RigCompliance => names.push("change at a reversal"),
-        Law::FrictionAgeing => names.push("change where contacts are old"),
-        Law::ThermalFriction => names.push("change when warm"),
-        Law::Adhesion => names.push("change with the load, relative"),
-        Law::Misalignment => names.push("change per metre of the way"),
-        Law::Drift => names.push("change per metre of slip"),
-    }
-    let rows = (0..record.value.len())
-        .map(|i| {
-            let sign = record.direction[i];
-            let mut row = vec![sign];
-            let pressure = record.pressure.as_ref().map(|p| p[i]);
-            if record.piston {
-                row.push(pressure.unwrap_or(0.0));
-            }
-            let fast = arrived[i];
-            if law != Law::Constant {
-                row.push(sign * fast);
-            }
-            // Contacts are as old as the change left them; before a step nothing has changed.
-            let old = |i: usize, kept: f64| {
-                if record.piston {
-                    kept
-                } else if record.stroke[i] == 0 {
-                    0.0
-                } else {
-                    kept * arrival(record.since[i], stretch)
-                }
-            };
-            let kept = |x: f64| (-x / memory.unwrap_or(1.0)).exp();
-            match law {
-                Law::Constant | Law::Speed => {}
-                Law::RigCompliance => row.push(sign * kept(record.since[i])),
-                Law::FrictionAgeing => row.push(sign * old(i, kept(record.since[i]))),
-                Law::ThermalFriction if !record.piston && record.stroke[i] == 0 => row.push(0.0),
-                Law::ThermalFriction => row.push(sign * (1.0 - kept(record.since_time[i]))),
-                Law::Adhesion => row.push(sign * (pressure.unwrap_or(load) / load - 1.0)),
-                Law::Misalignment => row.push(sign * (record.place[i] - place)),
-                Law::Drift => row.push(sign * record.slip[i]),
-            }
-            row
-        })
-        .collect();
-    (names, rows)
-}
-
-/// A record's verdict for people.
-pub fn table(record: &FrictionRecord, verdict: &Verdict) -> String {
-    let unit = if record.piston { "N" } else { "1" };
-    let mut out = format!(
-        "{}: {} samples, {} strokes or steps, noise {:.3e} {unit}\n",
-        record.file,
-        record.value.len(),
-        record.stroke.last().copied().unwrap_or(0),
-        verdict.noise
-    );
-    for law in &verdict.laws {
-        let memory = law.memory.map_or(String::new(), |m| match law.law {
-            Law::ThermalFriction => format!(", over {m:.3e} s"),
-            _ => format!(", over {m:.3e} m"),
-        });
-        let stretch = if law.stretch > 0.0 {
-            format!(", speed arrives over {:.2e} m", law.stretch)
-        } else {
-            String::new()
-        };
-        let told: Vec<String> = law
-            .coefficients
-            .iter()
-            .map(|(name, value, deviation)| format!("{name} {value:.4e} ± {deviation:.1e}"))
-            .collect();
-        out.push_str(&format!(
-            "  {:<24} P {:.2}  held-out error {:.3e} {unit}  closes {:>4.0} %  {}{memory}{stretch}\n",
-            law.law.name(),
-            law.probability,
-            law.held_out,
-            100.0 * law.closed,
-            told.join(", ")
-        ));
-    }
-    let [a, b, c, d] = verdict.quarters;
-    out.push_str(&format!(
-        "  left by the best, by quarter of slip since a change: {a:.2e} {b:.2e} {c:.2e} {d:.2e} {unit}\n"
-    ));
-    if verdict.remainder {
-        out.push_str("  the best law leaves more than the noise: partly explained, the remainder is unknown\n");
-    }
-    out
-}
-
-/// A record's verdict as JSON.
-pub fn document(record: &FrictionRecord, verdict: &Verdict) -> serde_json::Value {
-    serde_json::json!({
-        "record": record.file,
-        "samples": record.value.len(),
-        "noise": verdict.noise,
-        "remainder_unknown": verdict.remainder,
-        "error_by_quarter": verdict.quarters,
-        "laws": verdict.laws.iter().map(|l| serde_json::json!({
-            "law": l.law.name(),
-            "probability": l.probability,
-            "held_out_error": l.held_out,
-            "closed_fraction": l.closed,
-            "memory": l.memory,
-            "stretch": l.stretch,
-            "coefficients": l.coefficients.iter().map(|(name, value, deviation)| {
-                serde_json::json!({"name": name, "value": value, "std": deviation})
-            }).collect::<Vec<_>>(),
-        })).collect::<Vec<_>>(),
-    })
-}
-
-/// Share of a change that has arrived after the slip `x`.
-fn arrival(x: f64, stretch: f64) -> f64 {
-    if stretch > 0.0 {
-        1.0 - (-x / stretch).exp()
-    } else {
-        1.0
-    }
-}
-
-/// Logarithm of the sliding speed over its mean; where it is stepped, the two speeds' with the rig
-/// stretching in between.
-fn arrived(record: &FrictionRecord, stretch: f64) -> Vec<f64> {
-    let count = record.speed.len();
-    let mean = record.speed.iter().map(|v| v.ln()).sum::<f64>() / count.max(1) as f64;
-    if record.piston {
-        return record.speed.iter().map(|v| v.ln() - mean).collect();
-    }
-    let of = |stroke: usize| {
-        let mut speeds: Vec<f64> =
-            (0..count).filter(|i| record.stroke[*i] == stroke).map(|i| record.speed[i]).collect();
-        speeds.sort_by(f64::total_cmp);
-        speeds.get(speeds.len() / 2).map_or(mean, |v| v.ln())
-    };
-    let last = record.stroke.last().copied().unwrap_or(0);
-    let speeds: Vec<f64> = (0..=last).map(of).collect();
-    (0..count)
-        .map(|i| {
-            let k = record.stroke[i];
-            let before = speeds[k.saturating_sub(1)];
-            before + (speeds[k] - before) * arrival(record.since[i], stretch) - speeds[0]
-        })
-        .collect()
 }
 
 fn by_quarter(record: &FrictionRecord, law: &Fitted) -> [f64; 4] {

@@ -8,7 +8,8 @@ use crate::columns;
 use crate::error::{Fault, Problem};
 use std::path::Path;
 
-const REMEDY: &str = "write time_s with displacement_m and friction_coefficient, or with position_m, \
+const REMEDY: &str =
+    "write time_s with displacement_m and friction_coefficient, or with position_m, \
                       force_n and pressure_pa, in SI units";
 /// Samples of a record after thinning: enough for every law here, and fast.
 const SAMPLES: usize = 6000;
@@ -147,11 +148,7 @@ fn cut(
     let mut sizes: Vec<f64> = velocity.iter().map(|v| v.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let typical = sizes[count / 2].max(1e-15);
-    let changes = if piston {
-        reversals(&velocity, 0.3 * typical)
-    } else {
-        steps(&time, &place)
-    };
+    let changes = if piston { reversals(&velocity, 0.3 * typical) } else { steps(&time, &place) };
     let mut record = FrictionRecord {
         file,
         time: Vec::new(),
@@ -243,8 +240,7 @@ mod tests {
     fn a_step_of_the_speed_is_found_where_it_is() {
         // 1 µm/s for 60 s, then 10 µm/s: exact kink at row 600 of 1000.
         let time: Vec<f64> = (0..1000).map(|i| 0.1 * f64::from(i)).collect();
-        let place: Vec<f64> =
-            time.iter().map(|t| 1e-6 * t + 9e-6 * (t - 60.0).max(0.0)).collect();
+        let place: Vec<f64> = time.iter().map(|t| 1e-6 * t + 9e-6 * (t - 60.0).max(0.0)).collect();
         let found = steps(&time, &place);
         assert!((found[0] as i64 - 600).abs() <= 1, "{found:?}");
     }

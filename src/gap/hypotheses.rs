@@ -1,24 +1,17 @@
 //! Which effects are asked, and how well each explains the data after the same effort.
 
-use super::campaign::RunKind;
-use super::fit::{
-    self, approach, columns, evaluate, explore, improve, Effort, Fit, Noise, View,
-};
+use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
+use super::guess::{starts, Guess};
+use super::pairs::{alone, pairs};
 use super::problem::{Bench, Choice};
 use super::symmetry::{self, Finding};
 use crate::error::Fault;
 use nalgebra::DMatrix;
 
-/// Whitened severities from which an effect is started.
-const STARTS: [f64; 2] = [-1.2, 0.3];
 /// Effects of which all forms are tried.
 const FAMILIES: usize = 3;
 /// Effects that are refined with Jacobians of their own.
 const REFINED: usize = 3;
-/// Level of a single effect below which there is nothing left for a second one.
-const LITTLE: f64 = 1.2;
-/// Pairs that are kept.
-const PAIRED: usize = 3;
 
 /// A fitted hypothesis.
 #[derive(Clone, Debug)]
@@ -53,7 +46,8 @@ fn ruled_out(bench: &Bench, base: &Fit, choice: Choice, of: &[usize]) -> Hypothe
     fit.added = vec![choice];
     fit.x.resize(bench.coordinates(&fit.added).len(), 0.0);
     fit.x[base.x.len()] = NEXT_TO_NONE;
-    if let crate::effects::Spread::Absolute(_) = bench.coordinates(&fit.added)[base.x.len()].spread {
+    if let crate::effects::Spread::Absolute(_) = bench.coordinates(&fit.added)[base.x.len()].spread
+    {
         fit.x[base.x.len()] = 0.0;
     }
     fit.jacobian = None;
@@ -78,28 +72,33 @@ pub struct Method {
 
 impl Method {
     /// Everything.
-    pub const FULL: Self = Self { recalibrate: true, equal_effort: true, families: true, symmetries: true };
+    pub const FULL: Self =
+        Self { recalibrate: true, equal_effort: true, families: true, symmetries: true };
 }
 
-const fn effort(steps: usize, refresh: usize, heat: f64, onset_parts: Option<usize>) -> Effort {
+pub(super) const fn effort(
+    steps: usize,
+    refresh: usize,
+    heat: f64,
+    onset_parts: Option<usize>,
+) -> Effort {
     Effort { steps, refresh, view: View { heat, onset_parts } }
 }
 
-/// From the datasheet towards the optimum of the base model, on the first millisecond.
-const FAR: [Effort; 3] =
-    [effort(2, 1, 4.0, None), effort(2, 1, 4.0, None), effort(4, 2, 1.0, None)];
 /// Once more from another place.
 const HOME: [Effort; 2] = [effort(1, 1, 3.0, None), effort(4, 2, 1.0, None)];
 /// Places looked at where the optimum is not good.
 const DRAWS: usize = 32;
 /// Level from which on an optimum is good.
-const SETTLED: f64 = 0.8;
+pub(super) const SETTLED: f64 = 0.8;
 /// From the base model's optimum to that of an effect, with an inherited Jacobian.
 const NEAR: [Effort; 2] = [effort(2, 9, 3.0, None), effort(2, 9, 1.0, None)];
 /// With Jacobians of its own.
 pub const FINE: [Effort; 1] = [effort(4, 4, 1.0, None)];
 /// From an effect's own first guess.
 const GUESS: [Effort; 2] = [effort(2, 9, 2.0, None), effort(3, 9, 1.0, None)];
+/// So many effects go on from their own first guess.
+const GUESSED: usize = 5;
 /// Once more.
 const AGAIN: Effort = effort(2, 9, 1.0, None);
 
@@ -122,7 +121,8 @@ pub fn fit_all(
     if method.recalibrate {
         base = recalibrate(bench, base, of, !guess.promises());
     }
-    let left = |fit: &Fit| format!("{:.2} of the floor left", fit.objective / bench.total_weight(of));
+    let left =
+        |fit: &Fit| format!("{:.2} of the floor left", fit.objective / bench.total_weight(of));
     progress(0.3, &format!("recalibrated: {}", left(&base)));
     base.jacobian = Some(full_jacobian(bench, &base, of));
     let possible = symmetry::possible(&guess.findings);
@@ -193,103 +193,6 @@ pub fn fit_all(
     Ok(Fits { base: level(bench, base, of), singles, pairs, response, findings })
 }
 
-/// Where fits begin: all of them from the datasheet, after the same effort.
-#[derive(Clone, Debug)]
-pub struct Guess {
-    /// The base model's parameters.
-    pub base: Vec<f64>,
-    /// How well they do.
-    pub level: f64,
-    /// Every effect in its best form, its parameters with the base model's before them, and how well they do; none of
-    /// effects that the symmetries of the data rule out.
-    pub effects: Vec<Option<(Vec<Choice>, Vec<f64>, f64)>>,
-    /// What the data say without any model.
-    pub findings: Vec<Finding>,
-}
-
-impl Guess {
-    /// Does an effect already do far better than the base model? Then there is no need to search on
-    /// for a base model that does.
-    fn promises(&self) -> bool {
-        self.effects.iter().flatten().any(|e| e.2 < 0.6 * self.level && self.level > SETTLED)
-    }
-}
-
-/// First guesses from the free block and the first millisecond: `bench` looks at no more. An effect
-/// begins at the datasheet and not at the recalibrated base model, which its absence has bent.
-///
-/// # Errors
-/// What stops the reduction of the block.
-pub fn first_guess(
-    bench: &mut Bench,
-    findings: Vec<Finding>,
-    of: &[usize],
-    method: Method,
-    progress: &(dyn Fn(f64, &str) + Sync),
-) -> Result<Guess, Fault> {
-    let struck = struck(bench, vec![0.0; bench.base_size()], of);
-    let first = approach(bench, evaluate(bench, &[], struck, of), of, &FAR[..1]);
-    bench.measure_floor(&bench.params(&[], &first.x), of)?;
-    let bench: &Bench = bench;
-    let base = approach(bench, evaluate(bench, &[], first.x, of), of, &FAR[1..]);
-    let mut effects = Vec::new();
-    let possible = symmetry::possible(&findings);
-    for (effect, spec) in bench.specs.iter().enumerate() {
-        if !possible[effect] {
-            effects.push(None);
-            continue;
-        }
-        progress(0.05 + 0.01 * effect as f64, &format!("first guess of {}", spec.effect));
-        let forms = if method.families { spec.forms.len() } else { 1 };
-        let datasheet = vec![0.0; bench.base_size()];
-        let fits = (0..forms).flat_map(|form| {
-            let added = vec![Choice { effect, form }];
-            let points = starts(bench, &added, &datasheet);
-            points.into_iter().map(move |x| evaluate(bench, &added, x, of))
-        });
-        let Some(fit) = fits.min_by(|a, b| a.objective.total_cmp(&b.objective)) else { continue };
-        let fit = approach(bench, fit, of, &FIRST);
-        let level = fit.objective / bench.total_weight(of);
-        effects.push(Some((fit.added, fit.x, level)));
-    }
-    let level = base.objective / bench.total_weight(of);
-    Ok(Guess { base: base.x, level, effects, findings })
-}
-
-/// From the datasheet towards the optimum of an effect, on the first millisecond.
-const FIRST: [Effort; 2] = [effort(4, 2, 4.0, None), effort(3, 3, 1.0, None)];
-/// So many effects go on from their own first guess.
-const GUESSED: usize = 5;
-
-/// Starting points of an effect, the last of `added`, at the nuisance parameters `x`.
-fn starts(bench: &Bench, added: &[Choice], x: &[f64]) -> Vec<Vec<f64>> {
-    let coordinates = bench.coordinates(added);
-    let signed = matches!(coordinates[x.len()].spread, crate::effects::Spread::Absolute(_));
-    let severities = if signed { [-0.7, 0.7] } else { STARTS };
-    let at = |severity: &f64| {
-        let mut point = x.to_vec();
-        point.resize(coordinates.len(), 0.0);
-        point[x.len()] = *severity;
-        point
-    };
-    let mut points: Vec<Vec<f64>> = severities.iter().map(at).collect();
-    if coordinates.len() > x.len() + 2 {
-        // Three parameters of which one may be a phase: look around.
-        let mut noise = Noise::new(coordinates.len() as u64);
-        for _ in 0..DRAWN {
-            let mut point = points[0].clone();
-            for value in &mut point[x.len()..] {
-                *value = noise.normal().clamp(-2.0, 2.0);
-            }
-            points.push(point);
-        }
-    }
-    points
-}
-
-/// Points at which effects with three parameters are looked at before one is taken.
-const DRAWN: usize = 24;
-
 /// The base model's optimum from `start`.
 pub fn recalibrate(bench: &Bench, start: Fit, of: &[usize], search: bool) -> Fit {
     let mut best = approach(bench, start, of, &HOME);
@@ -307,18 +210,7 @@ pub fn recalibrate(bench: &Bench, start: Fit, of: &[usize], search: bool) -> Fit
     best
 }
 
-/// The free block alone tells modulus and damping, and costs next to nothing.
-pub fn struck(bench: &Bench, start: Vec<f64>, of: &[usize]) -> Vec<f64> {
-    let free = |r: &usize| bench.runs[*r].kind == RunKind::Ringdown;
-    let rung: Vec<usize> = of.iter().copied().filter(free).collect();
-    if rung.is_empty() {
-        return start;
-    }
-    let fit = evaluate(bench, &[], start, &rung);
-    approach(bench, fit, &rung, &[effort(4, 1, 5.0, None), effort(4, 1, 1.0, None)]).x
-}
-
-fn full_jacobian(bench: &Bench, fit: &Fit, of: &[usize]) -> DMatrix<f64> {
+pub(super) fn full_jacobian(bench: &Bench, fit: &Fit, of: &[usize]) -> DMatrix<f64> {
     columns(bench, fit, &(0..fit.x.len()).collect::<Vec<_>>(), of)
 }
 
@@ -329,7 +221,7 @@ fn better(a: Option<Fit>, b: Fit) -> Option<Fit> {
     }
 }
 
-fn level(bench: &Bench, fit: Fit, of: &[usize]) -> Hypothesis {
+pub(super) fn level(bench: &Bench, fit: Fit, of: &[usize]) -> Hypothesis {
     let level = fit.objective / bench.total_weight(of);
     Hypothesis { added: fit.added.clone(), fit, level }
 }
@@ -342,7 +234,7 @@ pub fn ranked(hypotheses: &[Hypothesis]) -> Vec<usize> {
 }
 
 /// One form of an effect from the base model's optimum, with the base model's Jacobian.
-fn start_effect(
+pub(super) fn start_effect(
     bench: &Bench,
     base: &Fit,
     choice: Choice,
@@ -410,61 +302,6 @@ fn again(
         base.jacobian = Some(full_jacobian(bench, &base, of));
     }
     base
-}
-
-/// The first effect of a pair from where the pair has left the block: a pair must not take credit
-/// for an optimum that its first effect alone has missed.
-fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis], of: &[usize]) {
-    let added = vec![pair.added[0]];
-    let x = pair.fit.x[..bench.coordinates(&added).len()].to_vec();
-    let fit = approach(bench, evaluate(bench, &added, x, of), of, &FINE);
-    for single in singles.iter_mut().filter(|s| s.added[0].effect == added[0].effect) {
-        if fit.objective < single.fit.objective {
-            *single = level(bench, fit.clone(), of);
-        }
-    }
-}
-
-/// The best effect with every other that the symmetries allow beside it, then once more the best
-/// of these pairs.
-fn pairs(
-    bench: &Bench,
-    singles: &[Hypothesis],
-    findings: &[Finding],
-    of: &[usize],
-    method: Method,
-    progress: &(dyn Fn(f64, &str) + Sync),
-) -> Vec<Hypothesis> {
-    let possible = symmetry::possible(findings);
-    let Some(first) = ranked(singles).into_iter().find(|at| possible[*at]) else {
-        return Vec::new();
-    };
-    if singles[first].level < LITTLE {
-        return Vec::new();
-    }
-    let mut from = singles[first].fit.clone();
-    if from.jacobian.is_none() {
-        from.jacobian = Some(full_jacobian(bench, &from, of));
-    }
-    let against = |e: usize| symmetry::contradictions(findings, &[from.added[0].effect, e]);
-    let others = (0..singles.len()).filter(|e| *e != from.added[0].effect);
-    let least = others.clone().map(against).min().unwrap_or(0);
-    let mut out = Vec::new();
-    for effect in others.filter(|e| against(*e) == least) {
-        progress(0.82 + 0.01 * effect as f64, "fitting pairs");
-        let choice = Choice { effect, form: singles[effect].added[0].form };
-        let (found, _) = start_effect(bench, &from, choice, of, method);
-        out.push(level(bench, found, of));
-    }
-    if let Some(at) = ranked(&out).first().copied() {
-        let fit = approach(bench, out[at].fit.clone(), of, &FINE);
-        if fit.objective < out[at].fit.objective {
-            out[at] = level(bench, fit, of);
-        }
-    }
-    out.sort_by(|a, b| a.level.total_cmp(&b.level));
-    out.truncate(PAIRED);
-    out
 }
 
 /// Standard deviations of a fit's whitened parameters.

@@ -194,7 +194,8 @@ mod tests {
 
     #[test]
     fn packing_loses_no_digit() {
-        let csv = "time_s,force_n,x_m\n0.0000001,-0.106,-0.000019729\n0.00004,56,0\n0.00008,1.25,3\n";
+        let csv =
+            "time_s,force_n,x_m\n0.0000001,-0.106,-0.000019729\n0.00004,56,0\n0.00008,1.25,3\n";
         assert_eq!(from_columns(&to_columns(csv).unwrap()).unwrap(), csv);
     }
 

@@ -133,11 +133,7 @@ impl Bench {
     ///
     /// # Errors
     /// What stops the reduction of the block.
-    pub fn new(
-        campaign: &Campaign,
-        specs: &'static [FitSpec],
-        look: Look,
-    ) -> Result<Self, Fault> {
+    pub fn new(campaign: &Campaign, specs: &'static [FitSpec], look: Look) -> Result<Self, Fault> {
         let plan = campaign.plan.clone();
         let runs: Vec<RunSpec> = campaign.runs.iter().map(|r| r.spec.clone()).collect();
         let measured: Vec<Vec<Feature>> = campaign
@@ -258,7 +254,8 @@ impl Bench {
             .par_iter()
             .map(|r| {
                 let spec = &self.runs[*r];
-                let pair = [&self.simulator, &fine].map(|s| self.predicted(s, params, spec, *r).ok());
+                let pair =
+                    [&self.simulator, &fine].map(|s| self.predicted(s, params, spec, *r).ok());
                 let [Some(coarse), Some(fine)] = pair else { return None };
                 let same = coarse.len() == fine.len() && fine.len() == self.measured[*r].len();
                 same.then(|| coarse.iter().zip(&fine).map(|(a, b)| a - b).collect())

@@ -60,12 +60,12 @@ pub fn make(template: Option<&Path>, out: &Path, count: usize, seed: u64) -> Res
             let text = std::fs::read_to_string(path).map_err(|e| file_fault(path, &e))?;
             (campaign::read_plan(path)?, text)
         }
-        None => (campaign::parse_plan(TEMPLATE, "the project's own template")?, TEMPLATE.to_string()),
+        None => {
+            (campaign::parse_plan(TEMPLATE, "the project's own template")?, TEMPLATE.to_string())
+        }
     };
-    let labels: Result<Vec<(String, Json)>, Fault> = (0..count)
-        .into_par_iter()
-        .map(|number| one(&plan, &text, out, number, seed))
-        .collect();
+    let labels: Result<Vec<(String, Json)>, Fault> =
+        (0..count).into_par_iter().map(|number| one(&plan, &text, out, number, seed)).collect();
     let labels: Map<String, Json> = labels?.into_iter().collect();
     let target = out.join("labels.json");
     let text = serde_json::to_string_pretty(&Json::Object(labels)).unwrap_or_default();

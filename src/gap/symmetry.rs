@@ -92,7 +92,12 @@ pub fn findings(campaign: &Campaign) -> Vec<Finding> {
     ratios(Rule::Load, load(campaign), WRONG_BY[1], "normal force at rest over the load");
     let clocks: Vec<f64> = campaign.runs.iter().map(|r| r.record.clock).collect();
     let clock = clocks.iter().sum::<f64>() / clocks.len().max(1) as f64;
-    ratios(Rule::Clock, Some(clock), WRONG_BY[2], "step of the time column times the sampling rate");
+    ratios(
+        Rule::Clock,
+        Some(clock),
+        WRONG_BY[2],
+        "step of the time column times the sampling rate",
+    );
     out
 }
 

@@ -1,0 +1,120 @@
+//! Where fits begin: from the datasheet, for the base model and for every effect alike.
+
+use super::campaign::RunKind;
+use super::fit::{approach, evaluate, Effort, Noise};
+use super::hypotheses::{effort, Method, SETTLED};
+use super::problem::{Bench, Choice};
+use super::symmetry::{self, Finding};
+use crate::error::Fault;
+
+/// Whitened severities from which an effect is started.
+const STARTS: [f64; 2] = [-1.2, 0.3];
+/// From the datasheet towards the optimum of the base model, on the first millisecond.
+const FAR: [Effort; 3] =
+    [effort(2, 1, 4.0, None), effort(2, 1, 4.0, None), effort(4, 2, 1.0, None)];
+
+/// Where fits begin: all of them from the datasheet, after the same effort.
+#[derive(Clone, Debug)]
+pub struct Guess {
+    /// The base model's parameters.
+    pub base: Vec<f64>,
+    /// How well they do.
+    pub level: f64,
+    /// Every effect in its best form, its parameters with the base model's before them, and how well they do; none of
+    /// effects that the symmetries of the data rule out.
+    pub effects: Vec<Option<(Vec<Choice>, Vec<f64>, f64)>>,
+    /// What the data say without any model.
+    pub findings: Vec<Finding>,
+}
+
+impl Guess {
+    /// Does an effect already do far better than the base model? Then there is no need to search on
+    /// for a base model that does.
+    pub(super) fn promises(&self) -> bool {
+        self.effects.iter().flatten().any(|e| e.2 < 0.6 * self.level && self.level > SETTLED)
+    }
+}
+
+/// First guesses from the free block and the first millisecond: `bench` looks at no more. An effect
+/// begins at the datasheet and not at the recalibrated base model, which its absence has bent.
+///
+/// # Errors
+/// What stops the reduction of the block.
+pub fn first_guess(
+    bench: &mut Bench,
+    findings: Vec<Finding>,
+    of: &[usize],
+    method: Method,
+    progress: &(dyn Fn(f64, &str) + Sync),
+) -> Result<Guess, Fault> {
+    let struck = struck(bench, vec![0.0; bench.base_size()], of);
+    let first = approach(bench, evaluate(bench, &[], struck, of), of, &FAR[..1]);
+    bench.measure_floor(&bench.params(&[], &first.x), of)?;
+    let bench: &Bench = bench;
+    let base = approach(bench, evaluate(bench, &[], first.x, of), of, &FAR[1..]);
+    let mut effects = Vec::new();
+    let possible = symmetry::possible(&findings);
+    for (effect, spec) in bench.specs.iter().enumerate() {
+        if !possible[effect] {
+            effects.push(None);
+            continue;
+        }
+        progress(0.05 + 0.01 * effect as f64, &format!("first guess of {}", spec.effect));
+        let forms = if method.families { spec.forms.len() } else { 1 };
+        let datasheet = vec![0.0; bench.base_size()];
+        let fits = (0..forms).flat_map(|form| {
+            let added = vec![Choice { effect, form }];
+            let points = starts(bench, &added, &datasheet);
+            points.into_iter().map(move |x| evaluate(bench, &added, x, of))
+        });
+        let Some(fit) = fits.min_by(|a, b| a.objective.total_cmp(&b.objective)) else { continue };
+        let fit = approach(bench, fit, of, &FIRST);
+        let level = fit.objective / bench.total_weight(of);
+        effects.push(Some((fit.added, fit.x, level)));
+    }
+    let level = base.objective / bench.total_weight(of);
+    Ok(Guess { base: base.x, level, effects, findings })
+}
+
+/// From the datasheet towards the optimum of an effect, on the first millisecond.
+const FIRST: [Effort; 2] = [effort(4, 2, 4.0, None), effort(3, 3, 1.0, None)];
+
+/// Starting points of an effect, the last of `added`, at the nuisance parameters `x`.
+pub(super) fn starts(bench: &Bench, added: &[Choice], x: &[f64]) -> Vec<Vec<f64>> {
+    let coordinates = bench.coordinates(added);
+    let signed = matches!(coordinates[x.len()].spread, crate::effects::Spread::Absolute(_));
+    let severities = if signed { [-0.7, 0.7] } else { STARTS };
+    let at = |severity: &f64| {
+        let mut point = x.to_vec();
+        point.resize(coordinates.len(), 0.0);
+        point[x.len()] = *severity;
+        point
+    };
+    let mut points: Vec<Vec<f64>> = severities.iter().map(at).collect();
+    if coordinates.len() > x.len() + 2 {
+        // Three parameters of which one may be a phase: look around.
+        let mut noise = Noise::new(coordinates.len() as u64);
+        for _ in 0..DRAWN {
+            let mut point = points[0].clone();
+            for value in &mut point[x.len()..] {
+                *value = noise.normal().clamp(-2.0, 2.0);
+            }
+            points.push(point);
+        }
+    }
+    points
+}
+
+/// Points at which effects with three parameters are looked at before one is taken.
+const DRAWN: usize = 24;
+
+/// The free block alone tells modulus and damping, and costs next to nothing.
+pub fn struck(bench: &Bench, start: Vec<f64>, of: &[usize]) -> Vec<f64> {
+    let free = |r: &usize| bench.runs[*r].kind == RunKind::Ringdown;
+    let rung: Vec<usize> = of.iter().copied().filter(free).collect();
+    if rung.is_empty() {
+        return start;
+    }
+    let fit = evaluate(bench, &[], start, &rung);
+    approach(bench, fit, &rung, &[effort(4, 1, 5.0, None), effort(4, 1, 1.0, None)]).x
+}

@@ -1,0 +1,66 @@
+//! Two effects at once.
+
+use super::fit::{approach, evaluate};
+use super::hypotheses::{full_jacobian, level, ranked, start_effect, Hypothesis, Method, FINE};
+use super::problem::{Bench, Choice};
+use super::symmetry::{self, Finding};
+
+/// Level of a single effect below which there is nothing left for a second one.
+const LITTLE: f64 = 1.2;
+/// Pairs that are kept.
+const PAIRED: usize = 3;
+
+/// The first effect of a pair from where the pair has left the block: a pair must not take credit
+/// for an optimum that its first effect alone has missed.
+pub(super) fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis], of: &[usize]) {
+    let added = vec![pair.added[0]];
+    let x = pair.fit.x[..bench.coordinates(&added).len()].to_vec();
+    let fit = approach(bench, evaluate(bench, &added, x, of), of, &FINE);
+    for single in singles.iter_mut().filter(|s| s.added[0].effect == added[0].effect) {
+        if fit.objective < single.fit.objective {
+            *single = level(bench, fit.clone(), of);
+        }
+    }
+}
+
+/// The best effect with every other that the symmetries allow beside it, then once more the best
+/// of these pairs.
+pub(super) fn pairs(
+    bench: &Bench,
+    singles: &[Hypothesis],
+    findings: &[Finding],
+    of: &[usize],
+    method: Method,
+    progress: &(dyn Fn(f64, &str) + Sync),
+) -> Vec<Hypothesis> {
+    let possible = symmetry::possible(findings);
+    let Some(first) = ranked(singles).into_iter().find(|at| possible[*at]) else {
+        return Vec::new();
+    };
+    if singles[first].level < LITTLE {
+        return Vec::new();
+    }
+    let mut from = singles[first].fit.clone();
+    if from.jacobian.is_none() {
+        from.jacobian = Some(full_jacobian(bench, &from, of));
+    }
+    let against = |e: usize| symmetry::contradictions(findings, &[from.added[0].effect, e]);
+    let others = (0..singles.len()).filter(|e| *e != from.added[0].effect);
+    let least = others.clone().map(against).min().unwrap_or(0);
+    let mut out = Vec::new();
+    for effect in others.filter(|e| against(*e) == least) {
+        progress(0.82 + 0.01 * effect as f64, "fitting pairs");
+        let choice = Choice { effect, form: singles[effect].added[0].form };
+        let (found, _) = start_effect(bench, &from, choice, of, method);
+        out.push(level(bench, found, of));
+    }
+    if let Some(at) = ranked(&out).first().copied() {
+        let fit = approach(bench, out[at].fit.clone(), of, &FINE);
+        if fit.objective < out[at].fit.objective {
+            out[at] = level(bench, fit, of);
+        }
+    }
+    out.sort_by(|a, b| a.level.total_cmp(&b.level));
+    out.truncate(PAIRED);
+    out
+}
