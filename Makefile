@@ -1,6 +1,6 @@
 # What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
 .DEFAULT_GOAL := help
-.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs clean chain leak-check
+.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs clean chain leak-check fuzz
 
 PYTHON := .venv/bin/python
 CAMPAIGNS ?= ../shared/measurements/open
@@ -34,6 +34,10 @@ bench: ## Every speed goal as a ratio measured side by side: out/bench/summary.c
 	@packaging/setup.sh build run test bench
 	@packaging/linux64.sh
 	@$(PYTHON) benches/bench.py
+
+fuzz: ## Hostile inputs of each kind, N of them (default 20000); failures are kept in tests/hostile/corpus
+	@packaging/setup.sh build
+	@TREAD_FUZZ=$(or $(N),20000) cargo test --test hostile
 
 leak-check: ## 1000 times instantiate, run, free under valgrind (half an hour)
 	@packaging/setup.sh build run test

@@ -78,6 +78,8 @@ stage_fmu() {
 
 stage_python() {
     cargo build --quiet --example follow_samples
+    check "build the masters in Rust" cargo build --quiet --manifest-path tests/masters/rust/Cargo.toml \
+        --target-dir "${CARGO_TARGET_DIR:-target}/masters"
     runner python .venv/bin/python -m pytest -q --no-header -p no:cacheprovider tests/python
 }
 

@@ -1,6 +1,7 @@
 """Importers that share no code with fmpy drive the same trajectory to the same numbers."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -117,3 +118,21 @@ def test_cofmupy(fmu, outputs):
     # cofmupy cannot set fixed parameters: the mesh is the default one.
     expected = library(points, load, **{name: 0 for name in COARSE})
     assert_same(json.loads(done.stdout), expected)
+
+
+@pytest.mark.parametrize("master", ["fmi", "fmu-runner"])
+def test_masters_in_rust(master, fmu, vr, outputs):
+    program = ROOT / os.environ.get("TREAD_RUST_MASTERS", "target/masters/debug/rust-masters")
+    if not program.exists():
+        pytest.fail("build it first: packaging/test.sh python does")
+    points = grid(N, H)
+    plan = [f"output {name} {vr[name]}" for name in outputs]
+    plan += [f"integer {name} {vr[name]} {value}" for name, value in COARSE.items()]
+    plan += [f"real normal_load {vr['normal_load']} {LOAD}", f"belt belt.x {vr['belt.x']}"]
+    plan += [f"at {t!r} {belt_x(t)!r}" for t in points]
+    done = subprocess.run([program, master, fmu], input="\n".join(plan), capture_output=True,
+                          text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    rows = [[float(cell) for cell in line.split(",")] for line in done.stdout.splitlines()]
+    assert_same(rows, library(points))
