@@ -53,7 +53,7 @@ impl Clock {
         }
         let gap = time - self.time;
         let rounding = 16.0 * f64::EPSILON * time.abs().max(h);
-        if gap.is_nan() || gap.abs() > rounding + 1e-3 * h {
+        if !gap.is_finite() || gap.abs() > rounding + 1e-3 * h {
             return Err(Refusal::error(format!(
                 "currentCommunicationPoint = {time}: allowed is {} (the end of the last step, or \
                  the start time); continue there, or restore a state of that time",

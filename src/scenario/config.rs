@@ -115,6 +115,14 @@ pub fn from_toml(text: &str, folder: &Path, sets: &[String]) -> Result<Config, F
     reader.take("", &run);
     if run.is_empty() {
         reader.problems.extend(check::problems(&params));
+        if reader.problems.is_empty() {
+            reader.problems.push(Problem::new(
+                "[run]",
+                "empty",
+                "duration and one of the tables run.slide, run.roll",
+                "say what the block does; `tread init slide` writes an example",
+            ));
+        }
         return Err(Fault::Invalid(reader.problems));
     }
     let built = reader.build(&run, &params, folder);

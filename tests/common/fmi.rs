@@ -122,7 +122,7 @@ impl Fmu {
     }
 
     /// A call that must succeed.
-    pub fn call(&self, f: impl Fn(fmi2Component) -> u32) {
+    pub fn call(&self, mut f: impl FnMut(fmi2Component) -> u32) {
         assert_eq!(f(self.c), OK, "{:?}", self.messages);
     }
 

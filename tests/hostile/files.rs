@@ -230,7 +230,7 @@ fn record(run: usize) -> String {
             56.0 + wave,
             0.2 * wave,
             2e-5 * wave,
-            1e-6 * wave
+            3e-6 * wave
         );
     }
     text
