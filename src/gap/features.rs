@@ -11,7 +11,7 @@ use super::spectrum::{amplitude, fundamental, hann, mean, power, Complex};
 const BIN: usize = 4;
 /// Bins of the onset of fast runs; 2.88 ms at 25 kHz.
 const BINS: usize = 18;
-/// Travel of the road [m] that the onset of slow runs covers: the first snap-out comes before.
+/// Travel of the road \[m\] that the onset of slow runs covers: the first snap-out comes before.
 pub const TRAVEL: f64 = 0.5e-3;
 /// Samples from which a run is long enough for its settled part.
 const LONG: usize = 200;

@@ -74,9 +74,9 @@ pub struct Fitted {
     pub held_out: f64,
     /// Root mean square error where it was fitted.
     pub fitted: f64,
-    /// Length [m] or time [s] of its memory, if it has one.
+    /// Length \[m\] or time \[s\] of its memory, if it has one.
     pub memory: Option<f64>,
-    /// Length [m] over which a change of the speed arrives, where the speed is stepped.
+    /// Length \[m\] over which a change of the speed arrives, where the speed is stepped.
     pub stretch: f64,
     /// Coefficients with standard deviations: name, value, deviation.
     pub coefficients: Vec<(&'static str, f64, f64)>,
@@ -185,7 +185,7 @@ fn best(record: &FrictionRecord, law: Law, pieces: &[usize]) -> Option<Fitted> {
         if record.piston { vec![0.0] } else { SHARES.iter().map(|s| s * slip).collect() };
     let all = memories.iter().flat_map(|m| stretches.iter().map(move |s| (*m, *s)));
     all.filter_map(|(memory, stretch)| one(record, law, memory, stretch, pieces))
-        .filter(|fitted| of_right_sign(fitted))
+        .filter(of_right_sign)
         .min_by(|a, b| a.fitted.total_cmp(&b.fitted))
 }
 

@@ -23,23 +23,23 @@ const FEWEST: usize = 100;
 pub struct FrictionRecord {
     /// File.
     pub file: String,
-    /// Time [s].
+    /// Time \[s\].
     pub time: Vec<f64>,
-    /// Friction [-], or force [N] of a piston.
+    /// Friction \[-\], or force \[N\] of a piston.
     pub value: Vec<f64>,
     /// +1 or −1: the direction in which friction acts on the value; +1 throughout for a coefficient.
     pub direction: Vec<f64>,
-    /// Sliding speed, not less than 1 % of its median [m/s].
+    /// Sliding speed, not less than 1 % of its median \[m/s\].
     pub speed: Vec<f64>,
-    /// Slip [m] since the direction or the imposed speed changed.
+    /// Slip \[m\] since the direction or the imposed speed changed.
     pub since: Vec<f64>,
-    /// Time [s] since then.
+    /// Time \[s\] since then.
     pub since_time: Vec<f64>,
-    /// Slip [m] since the start.
+    /// Slip \[m\] since the start.
     pub slip: Vec<f64>,
-    /// Place [m].
+    /// Place \[m\].
     pub place: Vec<f64>,
-    /// Pressure [Pa] on the contact or behind the piston, if measured.
+    /// Pressure \[Pa\] on the contact or behind the piston, if measured.
     pub pressure: Option<Vec<f64>>,
     /// Number of the stroke, or of the piece between changes of speed.
     pub stroke: Vec<usize>,

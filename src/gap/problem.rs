@@ -84,7 +84,7 @@ pub enum Look {
 }
 
 impl Look {
-    /// Records are compared up to this time [s].
+    /// Records are compared up to this time \[s\].
     pub fn horizon(self, run: &RunSpec) -> f64 {
         let speed = run.road_speed_m_s.abs();
         match self {
@@ -96,11 +96,11 @@ impl Look {
     }
 }
 
-/// Length of what is looked at first [s].
+/// Length of what is looked at first \[s\].
 const FIRST: f64 = 1.3e-3;
-/// Length of the fitted start of runs [s].
+/// Length of the fitted start of runs \[s\].
 const START: f64 = 2.9e-3;
-/// Longest fitted start, of slow runs [s].
+/// Longest fitted start, of slow runs \[s\].
 const SLOW: f64 = 5.8e-3;
 
 /// A campaign's data vector with all that is needed to predict it.

@@ -25,7 +25,7 @@ pub const DATASHEET: [(&str, &str); 12] = [
     ("friction_reference_pressure_pa", "friction.reference_pressure"),
 ];
 
-/// How finely the block is cut: elements along and up, highest mode [Hz], tolerance of a step.
+/// How finely the block is cut: elements along and up, highest mode \[Hz\], tolerance of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fineness {
     elements: (usize, usize),
@@ -37,7 +37,7 @@ pub struct Fineness {
 pub const FIT: Fineness = Fineness { elements: (6, 4), bound: 14e3, tolerance: 3e-3 };
 /// What the fits' error is measured against.
 pub const FINE: Fineness = Fineness { elements: (10, 6), bound: 24e3, tolerance: 1e-3 };
-/// Height above the road at which the struck block hangs [m]; the measured approach is minus this.
+/// Height above the road at which the struck block hangs \[m\]; the measured approach is minus this.
 const HANGING: f64 = 1.0;
 /// Speed of the blow at the tread face \[m/s\].
 const BLOW: f64 = 0.3;

@@ -20,7 +20,7 @@ use std::path::Path;
 pub const TEMPLATE: &str = include_str!("campaign_template.toml");
 /// Severities in standard deviations of the prior of an effect, from weak to strong.
 const SEVERITY: [f64; 2] = [-0.5, 1.0];
-/// Sizes of blocks in turn: length and height [m].
+/// Sizes of blocks in turn: length and height \[m\].
 const SIZES: [(f64, f64); 4] = [(0.015, 0.010), (0.015, 0.008), (0.015, 0.006), (0.018, 0.010)];
 
 /// What causes the gap in a made campaign.
