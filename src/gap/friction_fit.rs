@@ -181,8 +181,11 @@ fn best(record: &FrictionRecord, law: Law, pieces: &[usize]) -> Option<Fitted> {
         Law::Adhesion if record.pressure.is_none() => return None,
         _ => vec![None],
     };
-    let stretches: Vec<f64> =
-        if record.piston { vec![0.0] } else { SHARES.iter().map(|s| s * slip).collect() };
+    // A stiff rig hands a change of the speed on at once.
+    let mut stretches = vec![0.0];
+    if !record.piston {
+        stretches.extend(SHARES.iter().map(|s| s * slip));
+    }
     let all = memories.iter().flat_map(|m| stretches.iter().map(move |s| (*m, *s)));
     all.filter_map(|(memory, stretch)| one(record, law, memory, stretch, pieces))
         .filter(of_right_sign)
