@@ -194,6 +194,15 @@ impl Aligned {
         let start = room.as_ptr().addr().wrapping_neg() % LINE / size_of::<f64>();
         Self { room, start, len }
     }
+
+    /// `values`, then `rest` up to `len` numbers.
+    pub fn padded(values: &[f64], len: usize, rest: f64) -> Self {
+        let mut numbers = Self::zeros(len);
+        let (head, tail) = numbers.split_at_mut(values.len());
+        head.copy_from_slice(values);
+        tail.fill(rest);
+        numbers
+    }
 }
 
 impl Default for Aligned {

@@ -4,31 +4,9 @@
  *
  * h 10, l 15 mm (the FMU's own start values), 56.25 N, 0.3 m/s after a ramp of 0.5 ms; one input set, one
  * output read per step. Prints the seconds of each run. */
-#include <dlfcn.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
+#include "../../tests/c/fmi2_host.h"
 #include <time.h>
 
-typedef void *Component;
-typedef struct {
-    void (*logger)(void *, const char *, int, const char *, const char *, ...);
-    void *(*allocate)(size_t, size_t);
-    void (*release)(void *);
-    void (*finished)(void *, int);
-    void *environment;
-} Callbacks;
-
-static void logger(void *environment, const char *name, int status, const char *category,
-                   const char *format, ...) {
-    va_list arguments;
-    (void)environment, (void)name, (void)status, (void)category;
-    va_start(arguments, format);
-    vfprintf(stderr, format, arguments);
-    va_end(arguments);
-}
-
-#define LOAD(name, type) __typeof__(type) name = (__typeof__(type))(size_t)dlsym(library, #name)
 #define OK(call) if ((call) != 0) { fprintf(stderr, "failed: %s\n", #call); return 3; }
 
 int main(int argc, char **argv) {

@@ -95,14 +95,9 @@ impl Face {
         smoothing_speed: f64,
     ) -> Self {
         let size = padded(area.len());
-        let fill = |values: &[f64], rest: f64| {
-            let mut out = values.to_vec();
-            out.resize(size, rest);
-            Aligned::from(&out[..])
-        };
         Self {
-            area: fill(area, 0.0),
-            profile: fill(profile, OUT_OF_REACH),
+            area: Aligned::padded(area, size, 0.0),
+            profile: Aligned::padded(profile, size, OUT_OF_REACH),
             smoothing_speed,
             friction,
             contact: contact.clone(),

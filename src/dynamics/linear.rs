@@ -73,11 +73,8 @@ impl Linear {
                 by_contact[place * modes + m] = value;
             }
         }
-        let fill = |mut values: Vec<f64>, size: usize, rest: f64| {
-            values.resize(size, rest);
-            Aligned::from(&values[..])
-        };
         let e_over_rho = rubber.young_modulus / rubber.density;
+        let omega2: Vec<f64> = reduction.lambda.iter().map(|l| l * e_over_rho).collect();
         let mut base = Vec::new();
         if params.drive.normal == NormalDrive::Load {
             let carriage = &params.carriage;
@@ -93,17 +90,17 @@ impl Linear {
             base.push(BaseDof { axis: 0, mass, damping, stiffness });
         }
         Self {
-            omega2: fill(reduction.lambda.iter().map(|l| l * e_over_rho).collect(), modes, 1.0),
+            omega2: Aligned::padded(&omega2, modes, 1.0),
             nodes,
             stride,
             damping: rubber.stiffness_damping,
             by_mode,
             by_contact,
             coupling: std::array::from_fn(|r| {
-                fill(reduction.coupling[r].iter().map(|g| g * scale).collect(), modes, 0.0)
+                Aligned::padded((&reduction.coupling[r] * scale).as_slice(), modes, 0.0)
             }),
             block_mass: linear_density * params.block.length * params.block.height,
-            node_x: fill(reduction.mesh.x.clone(), stride, 0.0),
+            node_x: Aligned::padded(&reduction.mesh.x, stride, 0.0),
             node_z: -params.block.height,
             base,
             road_moves: params.drive.normal == NormalDrive::Load,

@@ -37,7 +37,7 @@ pub(super) struct Newton {
     of_tangential: Aligned,
     /// P φ \[N\] and A⁻¹ φ \[m/s\].
     of_normal: Aligned,
-    /// What is left of the tangential balance \[N\].
+    /// What is left of the tangential balance, with the other sign \[N\].
     residual: Aligned,
     diagonal: Aligned,
     matrix: Aligned,
@@ -69,9 +69,7 @@ impl Newton {
             nodes,
         }
     }
-}
 
-impl Newton {
     /// The inverse is made anew before it is used again.
     pub(super) fn forget(&mut self) {
         self.known = false;
@@ -155,13 +153,11 @@ impl Stage {
             // The normal change if the tangential one were none.
             direction_n[i] = a_phi[i] - d_n[i] - p_d[i];
             let pull = n.slopes[i][1] * direction_n[i];
-            n.residual[i] = t.tangential[i] - b_d[i] - p_phi[i] - pull;
+            n.residual[i] = -(t.tangential[i] - b_d[i] - p_phi[i] - pull);
         }
+        // −δ_t, since −Pᵀ δ_t is what is added to the normal change.
         direction_t.fill(0.0);
         dense::add_columns(direction_t, &n.inverse, &n.residual[..n.nodes]);
-        for x in direction_t.iter_mut() {
-            *x = -*x;
-        }
         let steps = &direction_t[..n.nodes];
         dense::add_lower_columns(direction_n, &m.by_tangential, steps, stride);
         for x in direction_t.iter_mut() {

@@ -49,7 +49,7 @@ impl State {
             base_acceleration: [0.0; 2],
             worn: Aligned::zeros(nodes),
             stiffness_factor: 1.0,
-            friction_factor: Aligned::from(&vec![1.0; nodes][..]),
+            friction_factor: Aligned::padded(&[], nodes, 1.0),
             step: 0.0,
             scale: 0.0,
         }

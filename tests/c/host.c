@@ -5,43 +5,10 @@
  *
  * Prints the force after each step of the first cycle; exit code 0 means that all went well. On
  * Windows the same file, built with mingw, drives the DLL. */
-#ifdef _WIN32
-#include <windows.h>
-#define dlopen(file, flags) LoadLibraryA(file)
-#define dlsym(library, name) GetProcAddress(library, name)
-#define dlerror() "LoadLibrary failed"
-#else
-#include <dlfcn.h>
-#endif
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-typedef void *Component;
-typedef struct {
-    void (*logger)(void *, const char *, int, const char *, const char *, ...);
-    void *(*allocate)(size_t, size_t);
-    void (*release)(void *);
-    void (*finished)(void *, int);
-    void *environment;
-} Callbacks;
+#include "fmi2_host.h"
 
 static int messages;
 
-static void logger(void *environment, const char *name, int status, const char *category,
-                   const char *format, ...) {
-    char text[2048];
-    va_list arguments;
-    (void)environment;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    messages++;
-    fprintf(stderr, "%s %d %s: %s\n", name, status, category, text);
-}
-
-#define LOAD(name, type) __typeof__(type) name = (__typeof__(type))(size_t)dlsym(library, #name); if (!name) return 10
 #define OK(call) if ((call) != 0) { fprintf(stderr, "failed: %s\n", #call); return 11; }
 
 int main(int argc, char **argv) {
@@ -67,7 +34,7 @@ int main(int argc, char **argv) {
     LOAD(fmi2FreeFMUstate, int (*)(Component, void **));
     LOAD(fmi2Reset, int (*)(Component));
 
-    Callbacks callbacks = {logger, calloc, free, NULL, NULL};
+    Callbacks callbacks = {logger, calloc, free, NULL, &messages};
     double last = 0;
     for (int cycle = 0; cycle < cycles; cycle++) {
         Component block = fmi2Instantiate("block", 1, argv[2], NULL, &callbacks, 0, 0);

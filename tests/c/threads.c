@@ -2,23 +2,10 @@
  * with gcc -Wall -Wextra -Werror, run plain and under helgrind.
  *
  *   threads LIBRARY GUID VR_INPUT_X VR_LOAD VR_ALONG VR_UP VR_FORCE */
-#include <dlfcn.h>
+#include "fmi2_host.h"
 #include <pthread.h>
-#include <stdarg.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { STEPS = 40, CYCLES = 3 };
-
-typedef void *Component;
-typedef struct {
-    void (*logger)(void *, const char *, int, const char *, const char *, ...);
-    void *(*allocate)(size_t, size_t);
-    void (*release)(void *);
-    void (*finished)(void *, int);
-    void *environment;
-} Callbacks;
 
 typedef struct {
     const char *guid;
@@ -42,16 +29,6 @@ typedef struct {
     double force[CYCLES][STEPS];
     int failed;
 } Job;
-
-static void logger(void *environment, const char *name, int status, const char *category,
-                   const char *format, ...) {
-    va_list arguments;
-    (void)environment;
-    va_start(arguments, format);
-    fprintf(stderr, "%s %d %s: ", name, status, category);
-    vfprintf(stderr, format, arguments);
-    va_end(arguments);
-}
 
 #define OK(call) if ((call) != 0) { job->failed = __LINE__; return NULL; }
 
@@ -86,7 +63,7 @@ static void *run(void *argument) {
     return NULL;
 }
 
-#define LOAD(member, name) *(void **)&fmu.member = dlsym(library, name); if (!fmu.member) return 10
+#define TAKE(member, name) *(void **)&fmu.member = dlsym(library, name); if (!fmu.member) return 10
 
 int main(int argc, char **argv) {
     static Job jobs[2];
@@ -95,18 +72,18 @@ int main(int argc, char **argv) {
     if (argc < 8) return 2;
     void *library = dlopen(argv[1], RTLD_NOW | RTLD_LOCAL);
     if (!library) { fprintf(stderr, "%s\n", dlerror()); return 9; }
-    LOAD(instantiate, "fmi2Instantiate");
-    LOAD(free_instance, "fmi2FreeInstance");
-    LOAD(setup, "fmi2SetupExperiment");
-    LOAD(enter, "fmi2EnterInitializationMode");
-    LOAD(leave, "fmi2ExitInitializationMode");
-    LOAD(set_real, "fmi2SetReal");
-    LOAD(get_real, "fmi2GetReal");
-    LOAD(set_integer, "fmi2SetInteger");
-    LOAD(step, "fmi2DoStep");
-    LOAD(get_state, "fmi2GetFMUstate");
-    LOAD(set_state, "fmi2SetFMUstate");
-    LOAD(free_state, "fmi2FreeFMUstate");
+    TAKE(instantiate, "fmi2Instantiate");
+    TAKE(free_instance, "fmi2FreeInstance");
+    TAKE(setup, "fmi2SetupExperiment");
+    TAKE(enter, "fmi2EnterInitializationMode");
+    TAKE(leave, "fmi2ExitInitializationMode");
+    TAKE(set_real, "fmi2SetReal");
+    TAKE(get_real, "fmi2GetReal");
+    TAKE(set_integer, "fmi2SetInteger");
+    TAKE(step, "fmi2DoStep");
+    TAKE(get_state, "fmi2GetFMUstate");
+    TAKE(set_state, "fmi2SetFMUstate");
+    TAKE(free_state, "fmi2FreeFMUstate");
     fmu.guid = argv[2];
     fmu.x = (unsigned)atoi(argv[3]);
     fmu.load = (unsigned)atoi(argv[4]);
