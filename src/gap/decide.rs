@@ -212,6 +212,7 @@ pub fn modules(bench: &Bench, fits: &Fits) -> Vec<(String, f64)> {
 mod tests {
     use super::*;
     use crate::gap::fit::Fit;
+    use crate::gap::problem::Look;
 
     fn at(level: f64) -> Hypothesis {
         let fit = Fit {
@@ -221,7 +222,7 @@ mod tests {
             objective: level,
             jacobian: None,
         };
-        Hypothesis { added: Vec::new(), fit, level }
+        Hypothesis { added: Vec::new(), fit, level, look: Look::Fit }
     }
 
     fn fits(base: f64, singles: &[f64]) -> Fits {

@@ -8,6 +8,7 @@ use super::fit::evaluate;
 use super::guess::{self, Guess};
 use super::held_out;
 use super::hypotheses::{self, Fits, Hypothesis, Method};
+use super::polish;
 use super::problem::{loss, Bench, Look, Residuals};
 use super::symmetry;
 use super::where_::{self, Cell};
@@ -17,7 +18,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// So many of the most probable causes are judged on the held-out runs.
-const JUDGED: usize = 5;
+const JUDGED: usize = 3;
 
 /// How to go about it.
 #[derive(Clone, Copy, Debug)]
@@ -67,8 +68,10 @@ pub struct Experiment {
 /// The answers.
 #[derive(Debug)]
 pub struct Diagnosis {
-    /// Data vector and model.
+    /// Data vector of the start of the runs, and model.
     pub bench: Bench,
+    /// The same of whole runs.
+    pub whole: Bench,
     /// Campaign with its data.
     pub campaign: Campaign,
     /// All fits.
@@ -111,7 +114,7 @@ pub fn diagnose(
     let mut bench = Bench::new(&campaign, crate::effects::fit_specs(), Look::Fit)?;
     let all: Vec<usize> = (0..bench.runs.len()).collect();
     let held = if settings.hold_out { held_out::choose(&bench.runs) } else { Vec::new() };
-    let seen = held_out::to_fit(&bench.runs, &held);
+    let seen = held_out::to_fit(&bench.runs, &held, Look::Fit);
     progress(0.0, "recalibrating the base model");
     let mut findings = symmetry::findings(&campaign);
     if !settings.method.symmetries {
@@ -127,21 +130,26 @@ pub fn diagnose(
         let mut first = Bench::new(&campaign, bench.specs, Look::Start)?;
         guess = guess::first_guess(&mut first, findings, &seen, settings.method, progress)?;
     }
-    let fits = hypotheses::fit_all(&mut bench, &guess, &seen, settings.method, progress)?;
+    let mut fits = hypotheses::fit_all(&mut bench, &guess, &seen, settings.method, progress)?;
     let weighed = decide::weigh(&fits);
     let decision = decide::decide(&bench, &fits, &weighed);
-    let judged = if held.is_empty() { all.clone() } else { held.clone() };
-    progress(0.97, "judging the held-out runs");
-    let mut whole = Bench::new(&campaign, bench.specs, Look::Whole)?;
-    whole.measure_floor(&bench.params(&[], &fits.base.fit.x), &judged)?;
-    let (gap, closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
-    let base = at(&bench, &fits.base, &all);
-    let cells = where_::map(&bench, &base);
     let modules = decide::modules(&bench, &fits);
+    let (detectable, indistinguishable) =
+        (detectable(&bench, &fits), indistinguishable(&bench, &fits));
+    let judged = if held.is_empty() { all.clone() } else { held.clone() };
+    let mut whole = Bench::new(&campaign, bench.specs, Look::Whole)?;
+    whole.measure_floor(&bench.params(&[], &fits.base.fit.x), &all)?;
+    if settings.method.recalibrate {
+        let seen = held_out::to_fit(&bench.runs, &held, Look::Whole);
+        polish::polish(&whole, &mut fits, &weighed, &seen, progress);
+    }
+    progress(0.99, "judging the held-out runs");
+    let (gap, closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
+    let cells = where_::map(&whole, &at(&whole, &fits.base, &all));
     let experiments = next_experiments(&bench, &fits, &weighed);
     Ok(Diagnosis {
-        detectable: detectable(&bench, &fits),
-        indistinguishable: indistinguishable(&bench, &fits),
+        detectable,
+        indistinguishable,
         campaign,
         fits,
         weighed,
@@ -152,6 +160,7 @@ pub fn diagnose(
         modules,
         experiments,
         bench,
+        whole,
         seconds: began.elapsed().as_secs_f64(),
         settings,
     })

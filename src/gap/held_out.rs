@@ -45,14 +45,14 @@ pub fn choose(runs: &[RunSpec]) -> Vec<usize> {
 }
 
 /// Runs to be fitted: all but the held-out ones, repetitions, and slow ramps that are as good as at
-/// rest within what a fit looks at.
-pub fn to_fit(runs: &[RunSpec], held_out: &[usize]) -> Vec<usize> {
+/// rest within what a fit looks at (not all of the run).
+pub fn to_fit(runs: &[RunSpec], held_out: &[usize], look: Look) -> Vec<usize> {
     let same = |a: &RunSpec, b: &RunSpec| {
         RunSpec { file: String::new(), ..a.clone() } == RunSpec { file: String::new(), ..b.clone() }
     };
     let slow = |r: &RunSpec| {
-        let gain = r.road_speed_end_m_s.unwrap_or(0.0).abs() * Look::Fit.horizon(r) / r.duration_s;
-        r.kind == RunKind::SpeedRamp && r.road_speed_m_s.abs() + gain < 0.15
+        let gain = r.road_speed_end_m_s.unwrap_or(0.0).abs() * look.horizon(r) / r.duration_s;
+        look != Look::Whole && r.kind == RunKind::SpeedRamp && r.road_speed_m_s.abs() + gain < 0.15
     };
     (0..runs.len())
         .filter(|r| !held_out.contains(r) && !slow(&runs[*r]))

@@ -3,7 +3,7 @@
 use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
 use super::guess::{starts, Guess};
 use super::pairs::{alone, pairs};
-use super::problem::{Bench, Choice};
+use super::problem::{Bench, Choice, Look};
 use super::symmetry::{self, Finding};
 use crate::error::Fault;
 use nalgebra::DMatrix;
@@ -20,8 +20,10 @@ pub struct Hypothesis {
     pub added: Vec<Choice>,
     /// The fit on the runs that may be seen.
     pub fit: Fit,
-    /// Objective over the sum of weights: about 1 where nothing is left.
+    /// Objective over the sum of weights on the start of the runs: about 1 where nothing is left.
     pub level: f64,
+    /// What `fit` has looked at last.
+    pub look: Look,
 }
 
 /// All fits of a campaign.
@@ -223,7 +225,7 @@ fn better(a: Option<Fit>, b: Fit) -> Option<Fit> {
 
 pub(super) fn level(bench: &Bench, fit: Fit, of: &[usize]) -> Hypothesis {
     let level = fit.objective / bench.total_weight(of);
-    Hypothesis { added: fit.added.clone(), fit, level }
+    Hypothesis { added: fit.added.clone(), fit, level, look: bench.look() }
 }
 
 /// Indices from the best to the worst.

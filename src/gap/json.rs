@@ -3,7 +3,7 @@
 use super::decide::{self, Cause};
 use super::diagnose::{self, Diagnosis};
 use super::hypotheses;
-use super::problem::Bench;
+use super::problem::Look;
 use super::simulate::nominal;
 use crate::error::{Fault, Problem};
 use crate::params::{table, Kind, Params, Value};
@@ -60,9 +60,9 @@ pub fn document(d: &Diagnosis) -> Json {
             "expected_gain_nats": e.gain,
         })).collect::<Vec<_>>(),
         "models": {
-            "nominal": changes(bench, &nominal(&bench.plan)),
-            "recalibrated": changes(bench, &bench.params(&[], &d.fits.base.fit.x)),
-            "with-effect": changes(bench, &params_of(d, &best)),
+            "nominal": changes(&nominal(&bench.plan)),
+            "recalibrated": changes(&bench.params(&[], &d.fits.base.fit.x)),
+            "with-effect": changes(&params_of(d, &best)),
             "with-effect_effects": decide::names(bench, &d.fits, &best),
         },
         "recalibration": parameters(d, &Cause::None),
@@ -78,7 +78,7 @@ pub fn document(d: &Diagnosis) -> Json {
                 .collect::<Vec<_>>(),
             "seed": d.settings.seed,
             "version": env!("CARGO_PKG_VERSION"),
-            "simulations": bench.simulations(),
+            "simulations": bench.simulations() + d.whole.simulations(),
             "seconds": (d.seconds * 10.0).round() / 10.0,
         },
     })
@@ -115,7 +115,8 @@ fn hypotheses_json(d: &Diagnosis) -> Vec<Json> {
 /// Fitted parameters of a cause with standard deviations and priors.
 pub fn parameters(d: &Diagnosis, cause: &Cause) -> Vec<Json> {
     let hypothesis = decide::fit_of(&d.fits, cause);
-    let deviations = hypotheses::deviations(&d.bench, hypothesis);
+    let bench = if hypothesis.look == Look::Whole { &d.whole } else { &d.bench };
+    let deviations = hypotheses::deviations(bench, hypothesis);
     d.bench
         .coordinates(&hypothesis.added)
         .iter()
@@ -141,7 +142,7 @@ fn unit(name: &str) -> &'static str {
 }
 
 /// Parameters that differ from the model's defaults, by dotted name.
-fn changes(_bench: &Bench, params: &Params) -> Json {
+fn changes(params: &Params) -> Json {
     let plain = Params::default();
     let mut out = Map::new();
     for spec in table::specs() {
@@ -149,7 +150,10 @@ fn changes(_bench: &Bench, params: &Params) -> Json {
         if value != (spec.get)(&plain) {
             let value = match value {
                 Value::Real(x) => json!(x),
-                Value::Integer(_) => json!(table::show(spec, &value)),
+                Value::Integer(_) if matches!(spec.kind, Kind::Enumeration { .. }) => {
+                    json!(table::show(spec, &value))
+                }
+                Value::Integer(i) => json!(i),
                 Value::Boolean(b) => json!(b),
                 Value::Text(t) => json!(t),
             };
@@ -180,4 +184,24 @@ pub fn read_model(path: &Path, model: &str) -> Result<Params, Fault> {
     };
     // One way into the parameters for all: the names and checks of the TOML files.
     crate::params::load::from_toml(&to_toml(values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every kind of parameter away from its default: what a diagnosis writes is what `predict` reads.
+    #[test]
+    fn a_model_comes_back_from_its_json_as_it_was() {
+        let mut params = Params::default();
+        params.solver.elements_along = 6;
+        params.solver.elements_up = 4;
+        params.rubber.young_modulus = 41.3e6;
+        params.friction.form = crate::params::FrictionForm::Rational;
+        params.effect.friction_ageing.enabled = true;
+        params.effect.friction_ageing.form = crate::effects::friction_ageing::Form::Saturating;
+        let written = changes(&params);
+        let lines = to_toml(written.as_object().expect("a table"));
+        assert_eq!(crate::params::load::from_toml(&lines).expect("readable"), params);
+    }
 }

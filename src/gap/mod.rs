@@ -21,6 +21,7 @@ pub mod hypotheses;
 pub mod json;
 pub mod packed;
 pub mod pairs;
+pub mod polish;
 pub mod predict;
 pub mod problem;
 pub mod quality;

@@ -173,6 +173,11 @@ impl Bench {
         })
     }
 
+    /// How much of the runs is compared.
+    pub const fn look(&self) -> Look {
+        self.look
+    }
+
     /// Number of simulations so far.
     pub fn simulations(&self) -> usize {
         self.simulations.load(Ordering::Relaxed)
