@@ -1,0 +1,64 @@
+//! The most probable causes once more, on whole runs: the fits before look at the first milliseconds,
+//! where parameters act without jumps; what a repaired model is used for is the settled vibration.
+
+use super::decide::{Cause, Weighed};
+use super::fit::{approach, evaluate, Effort, Fit};
+use super::hypotheses::{effort, Fits};
+use super::problem::{Bench, Look};
+
+/// Causes with a fit of their own that are polished.
+const POLISHED: usize = 3;
+/// From the optimum of the starts to that of whole runs: soft first, as cycles jump.
+const SCHEDULE: [Effort; 2] = [effort(3, 9, 4.0, None), effort(5, 3, 1.0, None)];
+/// The base model from the nuisance parameters of the best cause: equal effort.
+const CROSS: [Effort; 1] = [effort(4, 9, 1.0, None)];
+
+/// Refits the base model and the most probable causes on the whole runs `of`; `whole` looks at all of
+/// them. A fit that does not get better there is kept as it was. Levels stay those of the starts.
+pub fn polish(
+    whole: &Bench,
+    fits: &mut Fits,
+    weighed: &[Weighed],
+    of: &[usize],
+    progress: &(dyn Fn(f64, &str) + Sync),
+) {
+    debug_assert!(whole.look() == Look::Whole);
+    let own = |w: &&Weighed| matches!(w.cause, Cause::Single(_) | Cause::Pair(_));
+    let causes: Vec<Cause> =
+        weighed.iter().filter(own).take(POLISHED).map(|w| w.cause.clone()).collect();
+    progress(0.95, "the base model on whole runs");
+    let mut base = once(whole, &fits.base.fit, of);
+    for (rank, cause) in causes.iter().enumerate() {
+        progress(0.96 + 0.01 * rank as f64, "the likeliest causes on whole runs");
+        let hypothesis = match cause {
+            Cause::Single(k) => &mut fits.singles[*k],
+            Cause::Pair(k) => &mut fits.pairs[*k],
+            _ => continue,
+        };
+        let found = once(whole, &hypothesis.fit, of);
+        if rank == 0 {
+            let x = found.x[..base.x.len()].to_vec();
+            let mut start = evaluate(whole, &[], x, of);
+            start.jacobian = base.jacobian.clone();
+            let again = approach(whole, start, of, &CROSS);
+            if again.objective < base.objective {
+                base = again;
+            }
+        }
+        hypothesis.fit = found;
+        hypothesis.look = Look::Whole;
+    }
+    fits.base.fit = base;
+    fits.base.look = Look::Whole;
+}
+
+/// A fit on whole runs, from where it was.
+fn once(whole: &Bench, fit: &Fit, of: &[usize]) -> Fit {
+    let start = evaluate(whole, &fit.added, fit.x.clone(), of);
+    let found = approach(whole, start.clone(), of, &SCHEDULE);
+    if found.objective < start.objective {
+        found
+    } else {
+        start
+    }
+}
