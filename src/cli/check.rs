@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 
 use super::output::{self, Done, Stop};
 use crate::error::{Fault, Problem};
+use crate::gap::campaign::Campaign;
 use crate::params::load;
 use crate::scenario::{belt_csv, config, Roll};
 
 /// What was typed.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A run (TOML with a [run] table), a parameter file (TOML without one) or a belt path (CSV)
+    /// A run (TOML with a [run] table), a parameter file (TOML without one), a belt path (CSV), or a
+    /// measured campaign (its folder, campaign.toml or zip)
     file: PathBuf,
     /// Tell the problems as JSON
     #[arg(long)]
@@ -22,6 +24,8 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     let file = &arguments.file;
     let (kind, result) = if file.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
         ("belt path", belt_csv::read(file).and_then(|s| Roll::through(&s)).map(|_| ()))
+    } else if let Some(place) = campaign(file) {
+        ("campaign", check_campaign(place))
     } else {
         check_toml(file)?
     };
@@ -33,6 +37,26 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     let text = if arguments.json { json(kind, &problems) } else { plain(file, kind, &problems) };
     output::to_stdout(text.as_bytes())?;
     Ok(if problems.is_empty() { Done::Fine } else { Done::Problems })
+}
+
+/// Folder or zip of a campaign, if the file is one.
+fn campaign(file: &Path) -> Option<&Path> {
+    let zip = file.extension().is_some_and(|e| e.eq_ignore_ascii_case("zip"));
+    if file.is_dir() || zip {
+        return Some(file);
+    }
+    let folder = file.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    (file.file_name()? == "campaign.toml").then_some(folder)
+}
+
+/// What the diagnosis would tell about the data before it begins.
+fn check_campaign(place: &Path) -> Result<(), Fault> {
+    let warnings = Campaign::load(place)?.warnings;
+    if warnings.is_empty() {
+        Ok(())
+    } else {
+        Err(Fault::Invalid(warnings))
+    }
 }
 
 fn check_toml(file: &Path) -> Result<(&'static str, Result<(), Fault>), Fault> {

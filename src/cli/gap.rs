@@ -9,8 +9,8 @@ use crate::error::Fault;
 use crate::gap::diagnose::{self, Settings};
 use crate::gap::hypotheses::Method;
 use crate::gap::{
-    campaign, friction_fit, friction_record, friction_told, json, packed, predict, report, score,
-    suite, verify,
+    campaign, friction_fit, friction_record, friction_told, import, json, packed, predict, report,
+    score, suite, verify,
 };
 
 const EXAMPLES: &str = "\
@@ -19,6 +19,7 @@ Examples:
   tread gap predict out/campaign/diagnosis.json other/campaign.toml --model with-effect --out out/p
   tread gap export out/campaign/diagnosis.json --fmu out/Repaired.fmu
   tread gap score out labels.json
+  tread gap import plan.toml --out campaign
   tread gap make-suite --count 16 --seed 7 --out out/own
   tread gap friction record.csv
 
@@ -106,6 +107,17 @@ enum Command {
         /// Seed: the same one gives the same campaigns
         #[arg(long, default_value_t = 1)]
         seed: u64,
+    },
+    /// Make a campaign's folder from a laboratory's CSV files: columns, units, start and rate as a plan says
+    Import {
+        /// The plan (TOML)
+        plan: PathBuf,
+        /// Folder for campaign.toml, runs/ and import.json; nothing is written if anything is wrong
+        #[arg(long, short)]
+        out: PathBuf,
+        /// What was done to every channel as JSON
+        #[arg(long)]
+        json: bool,
     },
     /// Pack campaigns into one zip each; diagnose and check read them as they read folders
     Pack {
@@ -198,6 +210,11 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
         Command::MakeSuite { out, template, count, seed } => {
             suite::make(template.as_deref(), out, *count, *seed)?;
             eprintln!("{count} campaigns in {}", out.display());
+        }
+        Command::Import { plan, out, json } => {
+            let imported = import::import(plan, out)?;
+            let text = if *json { imported.json() } else { imported.table() };
+            output::to_stdout(text.as_bytes())?;
         }
         Command::Pack { campaigns, out } => pack(campaigns, out)?,
         Command::Friction { records, json } => return friction(records, *json),

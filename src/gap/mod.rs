@@ -18,6 +18,7 @@ pub mod friction_told;
 pub mod guess;
 pub mod held_out;
 pub mod hypotheses;
+pub mod import;
 pub mod json;
 pub mod packed;
 pub mod pairs;
