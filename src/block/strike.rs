@@ -17,16 +17,4 @@ impl TreadBlock {
         }
         self.observe();
     }
-
-    /// Displacement \[m\] and velocity \[m/s\] along the road of the clamped face against its prescribed
-    /// motion: zero but on a rig that gives way.
-    pub fn give(&self) -> [f64; 2] {
-        let at = self.linear.base.iter().position(|dof| dof.axis == 0);
-        at.map_or([0.0; 2], |j| {
-            [
-                self.state.base[j] - self.motion.position[0],
-                self.state.base_velocity[j] - self.motion.velocity[0],
-            ]
-        })
-    }
 }

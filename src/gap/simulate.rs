@@ -196,12 +196,11 @@ impl Sampler {
 
     fn push(&mut self, t: f64, block: &TreadBlock) {
         let out = block.outputs();
-        let [give, give_rate] = block.give();
         let values = [
             out.contact_force[0],
             out.contact_force[1],
-            out.run_in_velocity[0] + give_rate,
-            out.run_in_displacement[0] + give,
+            out.run_in_velocity[0] + out.deflection_velocity,
+            out.run_in_displacement[0] + out.deflection,
             self.height - out.carriage_z,
         ];
         self.record.time.push(t);
