@@ -39,7 +39,7 @@ fuzz: ## Hostile inputs of each kind, N of them (default 20000); failures are ke
 	@packaging/setup.sh build
 	@TREAD_FUZZ=$(or $(N),20000) cargo test --test hostile
 
-leak-check: ## 1000 times instantiate, run, free under valgrind (half an hour)
+leak-check: ## 1000 times instantiate, run, free under valgrind (ten minutes)
 	@packaging/setup.sh build run test
 	@packaging/linux64.sh
 	@TREAD_LEAK_CYCLES=1000 $(PYTHON) -m pytest -q tests/python/test_c_host.py -k valgrind

@@ -18,15 +18,8 @@ wanted=("$@")
 say() { echo "setup: $*" >&2; }
 fail() { say "$*"; exit 1; }
 
-# Installs a Debian package, asking for root only now.
-apt() {
-    command -v apt-get >/dev/null || fail "please install $* with your system's package manager"
-    local root=()
-    [ "$(id -u)" = 0 ] || root=(sudo)
-    say "installing $* from the distribution${root:+ (asks for root)}"
-    "${root[@]}" apt-get install -y --no-install-recommends "$@" >&2 ||
-        { "${root[@]}" apt-get update >&2 && "${root[@]}" apt-get install -y --no-install-recommends "$@" >&2; }
-}
+# Installs Debian packages, asking for root only now; elsewhere says what is missing.
+apt() { packaging/apt.sh "$@" || fail "needs $*"; }
 
 command -v cargo >/dev/null || fail "Rust is missing: install rustup with its stable toolchain"
 command -v cc >/dev/null || apt gcc libc6-dev

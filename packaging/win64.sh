@@ -11,19 +11,7 @@ cd "$(dirname "$0")/.."
 . packaging/env.sh
 say() { echo "win64: $*" >&2; }
 
-packages=()
-have() { dpkg -s "$1" >/dev/null 2>&1; }
-for package in rustc-web rust-web-src gcc-mingw-w64-x86-64-win32 wine wine64; do
-    have "$package" || packages+=("$package")
-done
-if [ ${#packages[@]} -gt 0 ]; then
-    root=()
-    [ "$(id -u)" = 0 ] || root=(sudo)
-    say "installing ${packages[*]} from the distribution${root:+ (asks for root)}"
-    "${root[@]}" apt-get update >&2
-    "${root[@]}" apt-get install -y --no-install-recommends "${packages[@]}" >&2
-fi
-
+packaging/apt.sh rustc-web rust-web-src gcc-mingw-w64-x86-64-win32 wine wine64
 rustc=$(dpkg -L rustc-web | grep 'bin/rustc$')
 target=x86_64-win7-windows-gnu
 target_dir=${CARGO_TARGET_DIR:-$PWD/target}/win64

@@ -252,6 +252,25 @@ impl Instance {
         }
     }
 
+    /// What setting these variables may change, to be put back if one of them is refused. Inputs alone,
+    /// as before every step, cost a copy of a few numbers.
+    pub(super) fn settable(&self, references: &[u32]) -> (Inputs, Option<Settings>) {
+        let is_input = |vr: &u32| {
+            let variable = self.variables.get(*vr as usize);
+            matches!(variable.map(|v| v.source), Some(Source::Input(..)))
+        };
+        let only_inputs = references.len() < 2 || references.iter().all(is_input);
+        (self.inputs, (!only_inputs).then(|| self.settings.clone()))
+    }
+
+    /// Undoes the sets since [`Self::settable`].
+    pub(super) fn put_back(&mut self, (inputs, settings): (Inputs, Option<Settings>)) {
+        self.inputs = inputs;
+        if let Some(settings) = settings {
+            self.settings = settings;
+        }
+    }
+
     fn fixed(&self, at: usize) -> Refusal {
         Refusal::error(format!(
             "{} is a fixed parameter: it may be set until fmi2ExitInitializationMode; call fmi2Reset \

@@ -93,8 +93,20 @@ impl Settings {
     }
 }
 
+/// Largest parameter file \[bytes\]; all parameters with a page of comment each are a tenth of it.
+const MAX_FILE: u64 = 1 << 20;
+
 fn overlay(path: &Path, params: Params) -> Result<Params, Refusal> {
     let problem = |reason: String| Refusal::error(format!("{}: {reason}", path.display()));
+    // A pipe or a device would keep the importer waiting, a film would fill its memory.
+    let about = std::fs::metadata(path).map_err(|e| problem(e.to_string()))?;
+    if !about.is_file() || about.len() > MAX_FILE {
+        return Err(problem(format!(
+            "a file of {} bytes: allowed is a regular file of up to {MAX_FILE} bytes; name a file with \
+             parameters",
+            about.len()
+        )));
+    }
     let text = std::fs::read_to_string(path).map_err(|e| problem(e.to_string()))?;
     let document: toml::Table = text.parse().map_err(|e| problem(load::syntax(&e).to_string()))?;
     let (params, problems) = load::from_table(&document, params);

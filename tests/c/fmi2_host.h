@@ -37,4 +37,5 @@ static void logger(void *environment, const char *name, int status, const char *
 }
 
 #define LOAD(name, type) __typeof__(type) name = (__typeof__(type))(size_t)dlsym(library, #name); if (!name) return 10
+#define LOAD_OR_EXIT(name, type) __typeof__(type) name = (__typeof__(type))(size_t)dlsym(library, #name); if (!name) exit(10)
 #endif

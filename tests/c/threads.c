@@ -30,12 +30,23 @@ typedef struct {
     int failed;
 } Job;
 
+#ifdef PLANT_A_RACE
+/* Both threads set the input of one instance: what a sanitizer must find, or it sees nothing. */
+static Component shared;
+#endif
+
 #define OK(call) if ((call) != 0) { job->failed = __LINE__; return NULL; }
 
 static void *run(void *argument) {
     Job *job = argument;
     const Fmu *f = job->fmu;
     Callbacks callbacks = {logger, calloc, free, NULL, NULL};
+#ifdef PLANT_A_RACE
+    for (int k = 0; k < 1000; k++) {
+        double newtons = k;
+        OK(f->set_real(shared, &f->load, 1, &newtons));
+    }
+#endif
     for (int cycle = 0; cycle < CYCLES; cycle++) {
         Component block = f->instantiate("block", 1, f->guid, NULL, &callbacks, 0, 0);
         int elements[2] = {2, 2};
@@ -90,6 +101,11 @@ int main(int argc, char **argv) {
     fmu.mesh[0] = (unsigned)atoi(argv[5]);
     fmu.mesh[1] = (unsigned)atoi(argv[6]);
     fmu.force = (unsigned)atoi(argv[7]);
+#ifdef PLANT_A_RACE
+    static Callbacks callbacks = {logger, calloc, free, NULL, NULL};
+    shared = fmu.instantiate("shared", 1, fmu.guid, NULL, &callbacks, 0, 0);
+    if (!shared) return 14;
+#endif
     for (int i = 0; i < 2; i++) {
         jobs[i].fmu = &fmu;
         if (pthread_create(&threads[i], NULL, run, &jobs[i])) return 3;

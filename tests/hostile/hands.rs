@@ -138,3 +138,42 @@ fn resources_are_found_in_every_spelling_of_their_place() {
         assert!(!fmu.c.is_null(), "a missing folder is no reason to refuse: {nowhere:?}");
     }
 }
+
+#[test]
+fn a_call_that_sets_many_sets_all_or_none() {
+    let names = ["normal_load", "friction.mu_inf"];
+    let references = names.map(vr);
+    for bad in [[80.0, 99.0], [f64::NAN, 0.5]] {
+        let fmu = Fmu::new();
+        let before = names.map(|name| default_of(name));
+        assert_eq!(unsafe { fmi2SetReal(fmu.c, references.as_ptr(), 2, bad.as_ptr()) }, ERROR);
+        // Reading is allowed in the error state, setting is not.
+        assert_eq!(names.map(|name| fmu.get(name)), before, "{bad:?}");
+    }
+    let fmu = Fmu::ready();
+    let inputs = [vr("belt.x"), vr("normal_load")];
+    let status = unsafe { fmi2SetReal(fmu.c, inputs.as_ptr(), 2, [1e-3, -5.0].as_ptr()) };
+    assert_eq!((status, fmu.get("belt.x")), (ERROR, 0.0));
+}
+
+fn default_of(name: &str) -> f64 {
+    let fmu = Fmu::new();
+    fmu.call(|c| unsafe { fmi2EnterInitializationMode(c) });
+    fmu.get(name)
+}
+
+/// A pipe would keep the importer waiting, a device would fill its memory.
+#[cfg(unix)]
+#[test]
+fn a_parameter_file_that_is_none_is_refused_at_once() {
+    let film = std::env::temp_dir().join(format!("tread-film-{}", std::process::id()));
+    std::fs::File::create(&film).unwrap().set_len(5 << 30).unwrap();
+    for path in ["/dev/zero", "/dev/stdin", "/", "/no/such/file", film.to_str().unwrap()] {
+        let fmu = Fmu::new();
+        let text = CString::new(path).unwrap();
+        let file = vr(variables::PARAMETER_FILE);
+        assert_eq!(unsafe { fmi2SetString(fmu.c, &file, 1, &text.as_ptr()) }, ERROR, "{path}");
+        assert!(fmu.last_message().contains(path), "{}", fmu.last_message());
+    }
+    std::fs::remove_file(&film).unwrap();
+}

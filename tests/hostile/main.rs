@@ -9,6 +9,10 @@
 
 #[path = "../common/fmi.rs"]
 mod fmi;
+#[path = "../common/play.rs"]
+mod play;
+#[path = "../common/swallow.rs"]
+mod swallow;
 
 mod calls;
 mod files;

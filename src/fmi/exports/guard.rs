@@ -6,7 +6,8 @@ use super::super::{Refusal, Status};
 use fmi_sys::fmi2::*;
 use std::cell::Cell;
 use std::ffi::{c_char, CStr};
-use std::panic::{catch_unwind, AssertUnwindSafe};
+use std::panic::{catch_unwind, AssertUnwindSafe, PanicHookInfo};
+use std::sync::OnceLock;
 
 /// More variables than this in one call are a slip of the importer, not a request.
 const MAX_COUNT: usize = 1 << 20;
@@ -16,16 +17,24 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
+type Hook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
+
+/// What panics met before: the compiler's own hook, but where the library is part of a program.
+///
+/// It is kept here and not in a closure, because that would lie on the heap and be lost whenever a host
+/// unloads the library.
+static OTHERS: OnceLock<Hook> = OnceLock::new();
+
 /// Keeps panics inside the FMU off stderr; their text goes to the importer's logger instead.
 pub(super) fn silence_panics() {
-    static ONCE: std::sync::Once = std::sync::Once::new();
-    ONCE.call_once(|| {
+    OTHERS.get_or_init(|| {
         let others = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |info| {
-            if !INSIDE.get() {
+        std::panic::set_hook(Box::new(|info| {
+            if let Some(others) = OTHERS.get().filter(|_| !INSIDE.get()) {
                 others(info);
             }
         }));
+        others
     });
 }
 

@@ -6,7 +6,7 @@ use super::super::{stepping, Refusal};
 use super::guard::{guarded, read, write};
 use fmi_sys::fmi2::*;
 
-/// Derivatives of inputs for the next step.
+/// Derivatives of inputs for the next step; on refusal of one none is set.
 #[no_mangle]
 pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
     c: fmi2Component,
@@ -17,18 +17,22 @@ pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
 ) -> fmi2Status {
     unsafe {
         guarded(c, Call::SetInputDerivatives, |instance| {
+            let references = read(vr, nvr, "value references")?;
             let orders = read(order, nvr, "orders")?.iter();
             let values = orders.zip(read(value, nvr, "values")?);
-            for (reference, (order, value)) in read(vr, nvr, "value references")?.iter().zip(values)
-            {
-                instance.set_input_derivative(*reference, *order, *value)?;
+            let before = instance.inputs;
+            let result = references.iter().zip(values).try_for_each(|(vr, (order, value))| {
+                instance.set_input_derivative(*vr, *order, *value)
+            });
+            if result.is_err() {
+                instance.inputs = before;
             }
-            Ok(())
+            result
         })
     }
 }
 
-/// Derivatives of outputs at the end of the last step.
+/// Derivatives of outputs at the end of the last step; on refusal nothing is written.
 #[no_mangle]
 pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
     c: fmi2Component,
@@ -39,11 +43,14 @@ pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
 ) -> fmi2Status {
     unsafe {
         guarded(c, Call::GetOutputDerivatives, |instance| {
+            let references = read(vr, nvr, "value references")?;
             let orders = read(order, nvr, "orders")?;
-            let values = write(value, nvr, "values")?.iter_mut().zip(orders);
-            for (reference, (value, order)) in read(vr, nvr, "value references")?.iter().zip(values)
-            {
-                *value = instance.output_derivative(*reference, *order)?;
+            let values = write(value, nvr, "values")?;
+            for (vr, order) in references.iter().zip(orders) {
+                instance.output_derivative(*vr, *order)?;
+            }
+            for ((value, vr), order) in values.iter_mut().zip(references).zip(orders) {
+                *value = instance.output_derivative(*vr, *order)?;
             }
             Ok(())
         })

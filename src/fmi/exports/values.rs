@@ -32,7 +32,7 @@ unsafe fn get_each<T: Copy>(
     }
 }
 
-/// Hands each reference with its value to `set`.
+/// Hands each reference with its value to `set`; on refusal of one none is set.
 unsafe fn set_each<T: Copy>(
     component: fmi2Component,
     vr: *const fmi2ValueReference,
@@ -43,10 +43,14 @@ unsafe fn set_each<T: Copy>(
     unsafe {
         guarded(component, Call::Set, |instance| {
             let references = read(vr, n, "value references")?;
-            for (reference, value) in references.iter().zip(read(values, n, "values")?) {
-                set(instance, *reference, *value)?;
+            let values = read(values, n, "values")?;
+            let before = instance.settable(references);
+            let mut pairs = references.iter().zip(values);
+            let result = pairs.try_for_each(|(vr, value)| set(instance, *vr, *value));
+            if result.is_err() {
+                instance.put_back(before);
             }
-            Ok(())
+            result
         })
     }
 }
