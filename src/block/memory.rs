@@ -1,6 +1,7 @@
 //! What the effects remember while the block moves.
 
 use super::signals::Outputs;
+use crate::contact::{Face, FrictionLaw};
 use crate::dynamics::{Linear, Stage, State};
 use crate::effects::sensor_dynamics::Channel;
 use crate::effects::Effects;
@@ -13,24 +14,31 @@ pub struct Memory {
     rise: Vec<f64>,
     /// Age per contact node, see [`crate::effects::friction_ageing`].
     age: Vec<f64>,
+    /// Pressure at which the friction coefficients hold \[Pa\].
+    pressure: f64,
     /// Amplitude of strain \[-\].
     amplitude: f64,
-    /// Shear modulus times volume of the block \[J\].
-    shear_energy: f64,
+    /// Mean shear of the block per modal coordinate: tangential displacement of the face over the
+    /// height.
+    shear: Vec<f64>,
     /// Force channels: contact x and z, belt x and z.
     channels: [Channel; 4],
 }
 
 impl Memory {
     /// The memory of a block at rest that has just been pressed on the road.
-    pub fn new(params: &Params, nodes: usize) -> Self {
-        let (block, rubber) = (&params.block, &params.rubber);
-        let shear_modulus = 0.5 * rubber.young_modulus / (1.0 + rubber.poisson_ratio);
+    pub fn new(params: &Params, linear: &Linear, area: &[f64]) -> Self {
+        let nodes = linear.nodes;
+        let per_area = 1.0 / (area.iter().sum::<f64>() * params.block.height);
+        let shear = linear.by_mode.chunks_exact(2 * linear.stride).map(|mode| {
+            per_area * mode.iter().zip(&area[..nodes]).map(|(phi, a)| phi * a).sum::<f64>()
+        });
         Self {
             rise: vec![0.0; nodes],
             age: vec![0.0; nodes],
+            pressure: params.friction.reference_pressure,
             amplitude: 0.0,
-            shear_energy: shear_modulus * block.length * block.height * block.width,
+            shear: shear.collect(),
             channels: [Channel::default(); 4],
         }
     }
@@ -56,7 +64,7 @@ impl Memory {
         &mut self,
         effects: &Effects,
         linear: &Linear,
-        area: &[f64],
+        face: &Face,
         h: f64,
         stage: &Stage,
         state: &mut State,
@@ -64,12 +72,19 @@ impl Memory {
         let traction = &stage.traction;
         let (thermal, ageing) = (&effects.thermal_friction, &effects.friction_ageing);
         if thermal.enabled {
-            thermal.warm(h, &stage.slip, &traction.tangential, area, &mut self.rise);
+            thermal.warm(h, &stage.slip, &traction.tangential, &face.area, &mut self.rise);
         }
         if ageing.enabled {
             ageing.age(h, &stage.slip, &mut self.age);
         }
         self.set_friction(effects, state);
+        if ageing.is_added() {
+            let slip = self.age.iter().zip(&stage.slip).zip(&mut state.friction_factor);
+            for ((age, v), factor) in slip {
+                let level = face.friction.level(self.pressure, *v, face.smoothing_speed);
+                *factor *= ageing.added(*age, level);
+            }
+        }
         if effects.payne_softening.enabled {
             self.soften(effects, linear, h, state);
         }
@@ -143,12 +158,10 @@ impl Memory {
         }
     }
 
-    /// Stiffness factor from the strain; the accelerations follow, so that the next step starts
+    /// Stiffness factor from the shear; the accelerations follow, so that the next step starts
     /// from them.
     fn soften(&mut self, effects: &Effects, linear: &Linear, h: f64, state: &mut State) {
-        let twice_energy: f64 =
-            linear.omega2.iter().zip(&state.z).map(|(omega2, z)| omega2 * z * z).sum();
-        let strain = (twice_energy / self.shear_energy).sqrt();
+        let strain = self.shear.iter().zip(&state.z).map(|(s, z)| s * z).sum::<f64>().abs();
         let payne = &effects.payne_softening;
         self.amplitude = payne.follow(h, strain, self.amplitude);
         let factor = payne.update(self.amplitude, state.stiffness_factor);

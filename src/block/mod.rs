@@ -60,7 +60,7 @@ impl TreadBlock {
         let linear = build::linear(&reduction, params);
         let face = build::face(&reduction, params)?;
         let integrator = build::integrator(&linear, &face, params);
-        let nodes = linear.nodes;
+        let memory = Memory::new(params, &linear, &face.area);
         let mut block = Self {
             state: State::new(&linear),
             stations: Stations::along(&reduction.mesh),
@@ -69,7 +69,7 @@ impl TreadBlock {
             linear,
             face,
             integrator,
-            memory: Memory::new(params, nodes),
+            memory,
             wear_mass: 0.0,
             wear_energy: 0.0,
             motion: Kinematics::default(),
@@ -106,7 +106,7 @@ impl TreadBlock {
     pub fn advance(&mut self, h: f64, segment: &Segment) -> Result<(), Fault> {
         let start = self.state.time;
         let (law, density) = (&self.params.wear, self.params.rubber.density);
-        let (area, wear_mass) = (&self.face.area, &mut self.wear_mass);
+        let (face, wear_mass) = (&self.face, &mut self.wear_mass);
         let wear_energy = &mut self.wear_energy;
         let (effects, memory, linear) = (&self.params.effect, &mut self.memory, &self.linear);
         let outcome = self.integrator.advance(
@@ -116,10 +116,11 @@ impl TreadBlock {
             h,
             segment,
             &mut |step, stage, state| {
-                let [mass, energy] = wear_off(law, density, area, step, stage, &mut state.worn);
+                let [mass, energy] =
+                    wear_off(law, density, &face.area, step, stage, &mut state.worn);
                 *wear_mass += mass;
                 *wear_energy += energy;
-                memory.after_step(effects, linear, area, step, stage, state);
+                memory.after_step(effects, linear, face, step, stage, state);
             },
         );
         let reached = self.state.time - start;

@@ -29,6 +29,14 @@ pub trait FrictionLaw {
         let mu = self.mu(Pack::splat(p), Pack::splat(v));
         [mu.value.0[0], mu.by_speed.0[0], mu.by_pressure.0[0]]
     }
+
+    /// Coefficient before its sign is smoothed over `smoothing_speed` \[m/s\], at one point; not
+    /// resolved below the smoothing speed.
+    fn level(&self, p: f64, v: f64, smoothing_speed: f64) -> f64 {
+        let v = v.abs().max(smoothing_speed);
+        let (sign, _) = smoothed_sign(Pack::splat(v), smoothing_speed);
+        self.at(p, v)[0] / sign.0[0]
+    }
 }
 
 /// The law that the parameters ask for.

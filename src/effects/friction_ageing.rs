@@ -13,11 +13,13 @@ pub enum Form {
     Dieterich,
     /// Towards a bound, exponentially.
     Saturating,
+    /// Added to the characteristic, with the logarithm of age.
+    Additive,
 }
 
 impl Form {
     /// All variants, in the order of the enumeration's values.
-    pub const ALL: [Self; 2] = [Self::Dieterich, Self::Saturating];
+    pub const ALL: [Self; 3] = [Self::Dieterich, Self::Saturating, Self::Additive];
 }
 
 /// Contact age per node; friction is multiplied by a factor that is 1 in steady sliding at the
@@ -26,7 +28,9 @@ impl Form {
 /// `dieterich` (ageing law, Dieterich, J. Geophys. Res. 84, 1979): θ̇ = 1 − |v|θ/D_c and
 /// 1 + b·\[ln(1 + θ/t_c) − ln(1 + θ_r/t_c)\], θ_r = D_c/v_r. `saturating` (exponential growth of static
 /// friction with rest: Brockley and Davis, J. Lubr. Technol. 90, 1968): share φ of full strength,
-/// φ̇ = (1 − φ)/t_c − |v|φ/D_c, and 1 + b·(φ − φ_r). Ruina's slip law is left out: its contacts do not
+/// φ̇ = (1 − φ)/t_c − |v|φ/D_c, and 1 + b·(φ − φ_r). `additive` (the sum of rate and state as Ruina, J. Geophys. Res. 88, 1983, writes it, with the
+/// ageing law): μ(p, v) + b·ln(1 + θ/t_c) at the pressure of reference, the characteristic being that of a
+/// contact without age. Ruina's slip law is left out: its contacts do not
 /// age at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionAgeing {
@@ -40,7 +44,7 @@ pub struct FrictionAgeing {
     pub distance: f64,
     /// Time t_c \[s\] from which age counts (dieterich) or in which strength saturates (saturating).
     pub time: f64,
-    /// Speed v_r \[m/s\] in which the factor is 1.
+    /// Speed v_r \[m/s\] in which the factor is 1 (not for additive).
     pub reference_speed: f64,
     /// Age \[s\] of the contact at initialization: the time at rest under load before it.
     pub initial_age: f64,
@@ -60,16 +64,19 @@ impl Default for FrictionAgeing {
     }
 }
 
+/// Friction coefficient below which nothing is added: where there is no friction, contacts do not hold.
+const LEAST_LEVEL: f64 = 1e-3;
+
 impl FrictionAgeing {
     /// Ages every node over `h` \[s\] of sliding at `slip` \[m/s\]; exact for constant speed. The age is
     /// θ \[s\] (dieterich) or the share φ of full strength (saturating).
     pub fn age(&self, h: f64, slip: &[f64], age: &mut [f64]) {
         let healing = match self.form {
-            Form::Dieterich => 0.0,
+            Form::Dieterich | Form::Additive => 0.0,
             Form::Saturating => 1.0 / self.time,
         };
         let growth = match self.form {
-            Form::Dieterich => 1.0,
+            Form::Dieterich | Form::Additive => 1.0,
             Form::Saturating => 1.0 / self.time,
         };
         let per_distance = 1.0 / self.distance;
@@ -86,13 +93,23 @@ impl FrictionAgeing {
     pub fn rest(&self, duration: f64, age: &mut [f64]) {
         for age in age {
             match self.form {
-                Form::Dieterich => *age += duration,
+                Form::Dieterich | Form::Additive => *age += duration,
                 Form::Saturating => *age = 1.0 + (*age - 1.0) * (-duration / self.time).exp(),
             }
         }
     }
 
-    /// Factor on friction at `age`.
+    /// Is friction added rather than multiplied?
+    pub fn is_added(&self) -> bool {
+        self.enabled && self.form == Form::Additive
+    }
+
+    /// Factor that adds b·ln(1 + θ/t_c) to a friction coefficient `level`.
+    pub fn added(&self, age: f64, level: f64) -> f64 {
+        1.0 + self.strength * (age / self.time).ln_1p() / level.max(LEAST_LEVEL)
+    }
+
+    /// Factor on friction at `age`; 1 where friction is added.
     pub fn factor(&self, age: f64) -> f64 {
         let sliding = self.reference_speed / self.distance;
         let gain = match self.form {
@@ -100,6 +117,7 @@ impl FrictionAgeing {
                 (age / self.time).ln_1p() - (1.0 / (sliding * self.time)).ln_1p()
             }
             Form::Saturating => age - 1.0 / (1.0 + sliding * self.time),
+            Form::Additive => 0.0,
         };
         1.0 + self.strength * gain
     }
@@ -111,6 +129,7 @@ const MM_S: Option<DisplayUnit> = Some(DisplayUnit { name: "mm/s", factor: 1e3 }
 const FORMS: &[Item] = &[
     Item { name: "dieterich", doc: "grows with the logarithm of age" },
     Item { name: "saturating", doc: "grows exponentially towards a bound" },
+    Item { name: "additive", doc: "adds to the friction characteristic with the logarithm of age (rate and state)" },
 ];
 
 /// Its parameters.
@@ -145,6 +164,15 @@ pub const FIT: FitSpec = FitSpec {
                 log("effect.friction_ageing.time", 3e-3, 1.0),
             ],
         },
+        FitForm {
+            name: "additive",
+            params: &[
+                log("effect.friction_ageing.strength", 0.06, 0.8),
+                log("effect.friction_ageing.distance", 30e-6, 0.9),
+                log("effect.friction_ageing.time", 1e-4, 1.0),
+                log("effect.friction_ageing.initial_age", 0.1, 1.5),
+            ],
+        },
     ],
 };
 
@@ -161,6 +189,14 @@ mod tests {
             on.age(10.0 * on.distance / 0.3, &[-0.3], &mut age);
             assert!((on.factor(age[0]) - 1.0).abs() < 1e-5, "{form:?}");
         }
+    }
+
+    #[test]
+    fn additive_friction_is_the_sum_of_rate_and_state() {
+        // Closed form: 0.08·ln(1 + 1 s/0.1 ms) on top of 0.7, with 0.7 in front.
+        let on = FrictionAgeing { form: Form::Additive, ..FrictionAgeing::default() };
+        let expected = 0.7 + 0.08 * 10_001.0_f64.ln();
+        assert!((0.7 * on.added(1.0, 0.7) - expected).abs() < 1e-14);
     }
 
     #[test]

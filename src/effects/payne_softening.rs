@@ -20,13 +20,14 @@ impl Form {
     pub const ALL: [Self; 2] = [Self::Kraus, Self::Instantaneous];
 }
 
-/// Stiffness factor f(γ)/f(γ_r) of the whole block, with the equivalent shear strain
-/// γ = √(2U/(G V)) from the elastic energy U at full stiffness.
+/// Stiffness factor f(γ)/f(γ_r) of the whole block, γ = |ū|/h its mean shear: the mean tangential
+/// displacement ū of the tread face over the height h. Pressing at rest does not shear and does not
+/// soften: filler networks break with the amplitude of deformation and heal at rest.
 ///
 /// `kraus` (Kraus, Rubber Chem. Technol. 51, 1978, with m = 0.55): f = 1 − s·x/(1 + x),
-/// x = (γ_a/γ_c)^(2m), γ_a the largest strain of the last 2 ms. `instantaneous`:
-/// f = 1 − s·γ/(γ + γ_c), smoothed over 30 µs. s = d/(1 + d) with the drop d = G₀/G_∞ − 1. γ_r is the strain at which Young's modulus
-/// was measured; the block is settled at that modulus.
+/// x = (γ_a/γ_c)^(2m), γ_a the largest shear of the last 2 ms. `instantaneous`:
+/// f = 1 − s·γ/(γ + γ_c), smoothed over 30 µs. s = d/(1 + d) with the drop d = G₀/G_∞ − 1. γ_r is the
+/// shear at which Young's modulus was measured.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PayneSoftening {
     /// Is the effect on?
@@ -121,14 +122,14 @@ pub const FIT: FitSpec = FitSpec {
         FitForm {
             name: "kraus",
             params: &[
-                log("effect.payne_softening.drop", 1.0, 0.8),
+                log("effect.payne_softening.drop", 1.5, 0.8),
                 log("effect.payne_softening.strain", 8e-3, 0.7),
             ],
         },
         FitForm {
             name: "instantaneous",
             params: &[
-                log("effect.payne_softening.drop", 1.0, 0.8),
+                log("effect.payne_softening.drop", 1.5, 0.8),
                 log("effect.payne_softening.strain", 8e-3, 0.7),
             ],
         },

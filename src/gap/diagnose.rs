@@ -18,7 +18,7 @@ use std::path::Path;
 use std::time::Instant;
 
 /// So many of the most probable causes are judged on the held-out runs.
-const JUDGED: usize = 3;
+const JUDGED: usize = 2;
 
 /// How to go about it.
 #[derive(Clone, Copy, Debug)]
@@ -129,6 +129,8 @@ pub fn diagnose(
     if settings.method.recalibrate {
         let mut first = Bench::new(&campaign, bench.specs, Look::Start)?;
         guess = guess::first_guess(&mut first, findings, &seen, settings.method, progress)?;
+        let mut middle = Bench::new(&campaign, bench.specs, Look::Middle)?;
+        guess::second_guess(&mut middle, &mut guess, &seen, progress)?;
     }
     let mut fits = hypotheses::fit_all(&mut bench, &guess, &seen, settings.method, progress)?;
     let weighed = decide::weigh(&fits);

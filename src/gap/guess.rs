@@ -8,7 +8,9 @@ use super::symmetry::{self, Finding};
 use crate::error::Fault;
 
 /// Whitened severities from which an effect is started.
-const STARTS: [f64; 2] = [-1.2, 0.3];
+const STARTS: [f64; 3] = [-1.2, 0.3, 1.2];
+/// The same where it has a sign: a pressure field that is tilted far lies behind a worse one.
+const SIGNED: [f64; 6] = [-0.7, 0.7, -1.3, 1.3, -2.0, 2.0];
 /// From the datasheet towards the optimum of the base model, on the first millisecond.
 const FAR: [Effort; 3] =
     [effort(2, 1, 4.0, None), effort(2, 1, 4.0, None), effort(4, 2, 1.0, None)];
@@ -76,6 +78,45 @@ pub fn first_guess(
     Ok(Guess { base: base.x, level, effects, findings })
 }
 
+/// The base model and the most promising effects once more, on runs twice as long: an optimum of the
+/// first millisecond that sees the next one meets the snap-outs one after the other and not all at once,
+/// of which some would be met in the wrong place for good.
+///
+/// # Errors
+/// What stops the reduction of the block.
+pub fn second_guess(
+    bench: &mut Bench,
+    guess: &mut Guess,
+    of: &[usize],
+    progress: &(dyn Fn(f64, &str) + Sync),
+) -> Result<(), Fault> {
+    bench.measure_floor(&bench.params(&[], &guess.base), of)?;
+    let bench: &Bench = bench;
+    let total = bench.total_weight(of);
+    let base = approach(bench, evaluate(bench, &[], guess.base.clone(), of), of, &SECOND);
+    guess.level = base.objective / total;
+    guess.base = base.x;
+    let mut likely: Vec<&mut (Vec<Choice>, Vec<f64>, f64)> =
+        guess.effects.iter_mut().flatten().collect();
+    likely.sort_by(|a, b| a.2.total_cmp(&b.2));
+    for (rank, effect) in likely.into_iter().enumerate() {
+        if rank >= GUESSED {
+            // Not comparable with those that went on.
+            effect.2 = f64::INFINITY;
+            continue;
+        }
+        progress(0.16 + 0.02 * rank as f64, "second guess of the most promising effects");
+        let fit = approach(bench, evaluate(bench, &effect.0, effect.1.clone(), of), of, &SECOND);
+        (effect.1, effect.2) = (fit.x, fit.objective / total);
+    }
+    Ok(())
+}
+
+/// From one horizon to the next.
+const SECOND: [Effort; 2] = [effort(4, 2, 2.0, None), effort(4, 2, 1.0, None)];
+/// So many effects go on from their own first guess.
+pub(super) const GUESSED: usize = 5;
+
 /// From the datasheet towards the optimum of an effect, on the first millisecond.
 const FIRST: [Effort; 2] = [effort(4, 2, 4.0, None), effort(3, 3, 1.0, None)];
 
@@ -83,7 +124,7 @@ const FIRST: [Effort; 2] = [effort(4, 2, 4.0, None), effort(3, 3, 1.0, None)];
 pub(super) fn starts(bench: &Bench, added: &[Choice], x: &[f64]) -> Vec<Vec<f64>> {
     let coordinates = bench.coordinates(added);
     let signed = matches!(coordinates[x.len()].spread, crate::effects::Spread::Absolute(_));
-    let severities = if signed { [-0.7, 0.7] } else { STARTS };
+    let severities: &[f64] = if signed { &SIGNED } else { &STARTS };
     let at = |severity: &f64| {
         let mut point = x.to_vec();
         point.resize(coordinates.len(), 0.0);

@@ -1,7 +1,7 @@
 //! Which effects are asked, and how well each explains the data after the same effort.
 
 use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
-use super::guess::{starts, Guess};
+use super::guess::{starts, Guess, GUESSED};
 use super::pairs::{alone, pairs};
 use super::problem::{Bench, Choice, Look};
 use super::symmetry::{self, Finding};
@@ -98,9 +98,7 @@ const NEAR: [Effort; 2] = [effort(2, 9, 3.0, None), effort(2, 9, 1.0, None)];
 /// With Jacobians of its own.
 pub const FINE: [Effort; 1] = [effort(4, 4, 1.0, None)];
 /// From an effect's own first guess.
-const GUESS: [Effort; 2] = [effort(2, 9, 2.0, None), effort(3, 9, 1.0, None)];
-/// So many effects go on from their own first guess.
-const GUESSED: usize = 5;
+const GUESS: [Effort; 2] = [effort(2, 2, 3.0, None), effort(5, 2, 1.0, None)];
 /// Once more.
 const AGAIN: Effort = effort(2, 9, 1.0, None);
 

@@ -7,11 +7,12 @@ use super::hypotheses::{effort, Fits};
 use super::problem::{Bench, Look};
 
 /// Causes with a fit of their own that are polished.
-const POLISHED: usize = 3;
+const POLISHED: usize = 2;
 /// From the optimum of the starts to that of whole runs: soft first, as cycles jump.
-const SCHEDULE: [Effort; 2] = [effort(3, 9, 4.0, None), effort(5, 3, 1.0, None)];
-/// The base model from the nuisance parameters of the best cause: equal effort.
-const CROSS: [Effort; 1] = [effort(4, 9, 1.0, None)];
+const SCHEDULE: [Effort; 2] = [effort(3, 9, 4.0, None), effort(5, 9, 1.0, None)];
+/// The best cause with a Jacobian of its new place, and the base model from its nuisance parameters: equal
+/// effort.
+const CROSS: [Effort; 1] = [effort(4, 4, 1.0, None)];
 
 /// Refits the base model and the most probable causes on the whole runs `of`; `whole` looks at all of
 /// them. A fit that does not get better there is kept as it was. Levels stay those of the starts.
@@ -35,12 +36,14 @@ pub fn polish(
             Cause::Pair(k) => &mut fits.pairs[*k],
             _ => continue,
         };
-        let found = once(whole, &hypothesis.fit, of);
+        let mut found = once(whole, &hypothesis.fit, of);
         if rank == 0 {
+            let again = approach(whole, Fit { jacobian: None, ..found.clone() }, of, &CROSS);
+            if again.objective < found.objective {
+                found = again;
+            }
             let x = found.x[..base.x.len()].to_vec();
-            let mut start = evaluate(whole, &[], x, of);
-            start.jacobian = base.jacobian.clone();
-            let again = approach(whole, start, of, &CROSS);
+            let again = approach(whole, evaluate(whole, &[], x, of), of, &CROSS);
             if again.objective < base.objective {
                 base = again;
             }

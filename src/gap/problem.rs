@@ -77,6 +77,8 @@ impl Coordinate {
 pub enum Look {
     /// Up to the first snap-out: what follows the parameters without jumps.
     Start,
+    /// Half way between: an optimum that has found the first snap-outs of fast runs finds the others.
+    Middle,
     /// Enough to fit: the first snap-outs of all runs.
     Fit,
     /// All.
@@ -91,6 +93,7 @@ impl Look {
             Self::Whole => run.duration_s,
             _ if run.kind == RunKind::Ringdown => run.duration_s,
             Self::Start => FIRST.max(0.5 * features::TRAVEL / speed.max(1e-3)).min(START),
+            Self::Middle => MIDDLE.max(0.75 * features::TRAVEL / speed.max(1e-3)).min(0.75 * SLOW),
             Self::Fit => START.max(features::TRAVEL / speed.max(1e-3)).min(SLOW),
         }
     }
@@ -98,6 +101,8 @@ impl Look {
 
 /// Length of what is looked at first \[s\].
 const FIRST: f64 = 1.3e-3;
+/// Length of what is looked at next \[s\].
+const MIDDLE: f64 = 2.0e-3;
 /// Length of the fitted start of runs \[s\].
 const START: f64 = 2.9e-3;
 /// Longest fitted start, of slow runs \[s\].
@@ -293,7 +298,7 @@ impl Bench {
         };
         let pairs = predicted.iter().zip(measured).zip(&self.inverse[run]);
         let residuals: Vec<f64> = pairs.map(|((p, m), w)| (p - m.value) * w).collect();
-        if residuals.len() == measured.len() && residuals.iter().all(|r| r.is_finite()) {
+        if predicted.len() == measured.len() && residuals.iter().all(|r| r.is_finite()) {
             residuals
         } else {
             vec![FAILED; measured.len()]

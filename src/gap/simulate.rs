@@ -145,7 +145,9 @@ impl Simulator {
     ) -> Result<(), Fault> {
         let step = 1.0 / self.plan.sampling_rate;
         let scenario = Scenario::Slide(motion(&self.plan, spec, 0.0));
-        let plan = scenario::Plan { step, duration: until, inputs: Inputs::Exact };
+        // Whole samples only: a scenario would end with a shorter step.
+        let duration = rows(until, step) as f64 * step;
+        let plan = scenario::Plan { step, duration, inputs: Inputs::Exact };
         block.initialize(scenario.start(), scenario.pose(scenario.start()))?;
         // The block is settled: a rest before the road starts only ages and cools the contact.
         block.rest(spec.dwell_s);
