@@ -1,6 +1,6 @@
 # What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
 .DEFAULT_GOAL := help
-.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs clean chain leak-check fuzz
+.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs pictures clean chain leak-check fuzz
 
 PYTHON := .venv/bin/python
 CAMPAIGNS ?= ../shared/measurements/open
@@ -68,6 +68,10 @@ paper: ## The paper's studies on this model: out/paper/index.html, and their tes
 docs: ## The book (docs/src, HTML where mdbook is installed) and the Rust documentation
 	@docs/build.sh
 	@RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
+
+pictures: ## The README's pictures: limit cycle and gap report (chromium), in docs/src/images
+	@packaging/setup.sh build run
+	@docs/pictures.sh
 
 clean: ## Remove what was built (keeps .venv)
 	@rm -rf target out

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Installs what the project needs; quick when there is nothing to do.
 #
-#   packaging/setup.sh [build] [run] [test] [bench]      (default: build run)
+#   packaging/setup.sh [build] [run] [test] [bench] [browser]      (default: build run)
 #
 #   build  C compiler, libclang, zig: to build the FMU
 #   run    fmpy, numpy, matplotlib: the demo and the studies
 #   bench  SUNDIALS, which the benches compare with
+#   browser  Debian's chromium, which looks at reports
 #   test   pytest and the importers that judge the FMU, valgrind, CalculiX to compare with
 #
 # Python packages go into .venv of this checkout. The distribution is asked (apt-get, as root or with
@@ -97,7 +98,8 @@ for part in "${wanted[@]}"; do
             command -v objdump >/dev/null || apt binutils
             command -v ccx >/dev/null || apt calculix-ccx
             ;;
+        browser) command -v chromium >/dev/null || apt chromium ;;
         bench) [ -e /usr/include/cvode/cvode.h ] || apt libsundials-dev ;;
-        *) fail "unknown part $part: build, run, test, bench" ;;
+        *) fail "unknown part $part: build, run, test, bench, browser" ;;
     esac
 done

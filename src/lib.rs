@@ -24,6 +24,8 @@ pub mod gap;
 pub mod mesh;
 pub mod metrics;
 pub mod pack;
+#[cfg(feature = "cli")]
+pub mod page;
 pub mod params;
 pub mod reduction;
 pub mod scenario;

@@ -228,6 +228,18 @@ fn several_results_make_a_waterfall() {
     folder.fine(&["plot", "v0.1.csv", "v0.2.csv", "--out", "all.svg"]);
     let svg = std::fs::read_to_string(folder.0.join("all.svg")).unwrap();
     assert!(svg.contains("v0.1") && svg.contains("v0.2") && !svg.contains("NaN"));
+    let speeds = ["plot", "v0.1.csv", "v0.2.csv", "--speeds", "0.1,0.2", "--out"];
+    folder.fine(&[&speeds[..], &["speeds.svg"]].concat());
+    let svg = std::fs::read_to_string(folder.0.join("speeds.svg")).unwrap();
+    assert!(svg.contains("road speed [m/s]") && !svg.contains("NaN"));
+    folder.fine(&[&speeds[..], &["speeds.png", "--width", "500"]].concat());
+    let png = std::fs::read(folder.0.join("speeds.png")).unwrap();
+    // 1000 x 360 at half the size; PNG specification: eight bytes of signature, width from byte 16.
+    assert_eq!(png[..8], *b"\x89PNG\r\n\x1a\n");
+    assert_eq!(png[16..24], [0, 0, 1, 0xf4, 0, 0, 0, 180]);
+    let falling = ["plot", "v0.1.csv", "v0.2.csv", "--speeds", "0.2,0.1"];
+    assert!(folder.refused(&falling).contains("2 rising speeds"));
+    assert!(folder.refused(&["plot", "v0.1.csv", "--out", "run.jpg"]).contains(".svg or .png"));
 }
 
 #[test]

@@ -38,26 +38,44 @@ fn reference_pages(test: &str) -> PathBuf {
     folder
 }
 
+/// The anchors that a page's headings make, as mdbook and code hosts write them: letters and digits in
+/// lower case, blanks as hyphens, the rest dropped.
+fn anchors(page: &Path) -> Vec<String> {
+    let text = read(page);
+    let headings = text.lines().filter(|l| l.starts_with('#'));
+    let slug = |heading: &str| -> String {
+        let name = heading.trim_start_matches('#').trim().to_lowercase();
+        let kept = name.chars().filter(|c| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_'));
+        kept.map(|c| if c == ' ' { '-' } else { c }).collect()
+    };
+    headings.map(slug).collect()
+}
+
 #[test]
 fn every_link_of_the_book_and_the_readme_leads_somewhere() {
     let pages = reference_pages("links");
     let book = root().join("docs/src");
     let mut documents = files(&book, "md");
-    documents.extend(["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|f| root().join(f)));
+    documents.extend(
+        ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "ARCHITECTURE.md"].map(|f| root().join(f)),
+    );
     let mut broken = Vec::new();
     for document in documents.iter().filter(|d| !d.starts_with(book.join("reference"))) {
         let text = read(document);
-        for target in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
-            let target = target.split('#').next().unwrap_or("");
-            if target.is_empty() || target.contains("://") {
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let (target, anchor) = link.split_once('#').unwrap_or((link, ""));
+            if target.contains("://") {
                 continue;
             }
             let made = target
                 .rsplit_once("reference/")
                 .map(|(_, page)| pages.join("reference").join(page));
-            let path = made.unwrap_or_else(|| document.parent().unwrap().join(target));
-            if !path.exists() {
-                broken.push(format!("{}: {target}", document.display()));
+            let path = match target {
+                "" => document.clone(),
+                _ => made.unwrap_or_else(|| document.parent().unwrap().join(target)),
+            };
+            if !path.exists() || !anchor.is_empty() && !anchors(&path).contains(&anchor.into()) {
+                broken.push(format!("{}: {link}", document.display()));
             }
         }
     }
@@ -66,8 +84,19 @@ fn every_link_of_the_book_and_the_readme_leads_somewhere() {
 }
 
 #[test]
+fn every_page_of_the_book_is_in_its_table_of_contents() {
+    let book = root().join("docs/src");
+    let contents = read(&book.join("SUMMARY.md"));
+    let pages = files(&book, "md");
+    let pages = pages.iter().map(|p| p.strip_prefix(&book).unwrap().display().to_string());
+    let lost: Vec<String> =
+        pages.filter(|p| p != "SUMMARY.md" && !contents.contains(&format!("]({p})"))).collect();
+    assert!(lost.is_empty(), "not in docs/src/SUMMARY.md: {lost:?}");
+}
+
+#[test]
 fn the_shell_parts_of_the_tutorials_run() {
-    for name in ["slide", "roll"] {
+    for name in ["slide", "roll", "wear"] {
         let text = read(&root().join(format!("docs/src/tutorials/{name}.md")));
         let script: String =
             text.split("```sh\n").skip(1).filter_map(|part| part.split("```").next()).collect();

@@ -61,7 +61,7 @@ enum Command {
     Init(init::Arguments),
     /// Tell all problems of a TOML file or belt path at once
     Check(check::Arguments),
-    /// Draw the result of a run as SVG
+    /// Draw the result of a run, or spectra of several, as SVG or PNG
     Plot(plot::Arguments),
     /// Print stick-slip frequency, amplitude, mean friction and stick fraction of a sliding run
     Metrics(metrics::Arguments),

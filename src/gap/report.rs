@@ -6,29 +6,20 @@ use super::diagnose::{self, Diagnosis};
 use super::json;
 use super::simulate::road_speed;
 use super::spectrum::{amplitude, hann, mean, power};
-use super::svg::{bars, lines, COLOURS};
+use super::svg::{bars, key, lines};
+use crate::page::{self, escape};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-const STYLE: &str = "body{font:15px/1.45 system-ui,sans-serif;max-width:1000px;margin:2em auto;padding:0 1em;color:#222}\
-h1{font-size:1.4em}h2{font-size:1.1em;margin-top:2em;border-bottom:1px solid #ddd}\
-.verdict{font-size:1.15em;background:#f3f6f8;border-left:5px solid #2a7f9e;padding:.7em 1em}\
-table{border-collapse:collapse;font-size:13px}td,th{padding:2px 7px;border:1px solid #ddd;text-align:right}\
-th,td:first-child{text-align:left}svg text{font:10px system-ui,sans-serif;fill:#444}svg .t{font-weight:600}\
-.frame{fill:none;stroke:#ccc}.bar{fill:#2a7f9e}.note{color:#666;font-size:13px}.row{display:flex;flex-wrap:wrap;gap:6px}\
-details{margin:.3em 0}";
+/// The channels in a reader's words, in the order of [`CHANNELS`].
+const SPOKEN: [&str; CHANNELS.len()] =
+    ["friction force", "normal force", "edge velocity", "edge displacement", "carriage approach"];
 
 /// The page.
 pub fn page(d: &Diagnosis) -> String {
-    let mut out = String::new();
-    let title = format!("Gap diagnosis of {}", escape(&d.campaign.plan.id));
-    let _ = write!(
-        out,
-        "<!DOCTYPE html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title}</title>\
-         <style>{STYLE}</style></head><body><h1>{title}</h1><p class=\"verdict\">{}</p>",
-        escape(&diagnose::verdict(d))
-    );
+    let mut out = page::head(&format!("Gap diagnosis of {}", d.campaign.plan.id));
+    let _ = write!(out, "<p class=\"verdict\">{}</p>", escape(&diagnose::verdict(d)));
     flags(d, &mut out);
     ladder(d, &mut out);
     causes(d, &mut out);
@@ -37,12 +28,8 @@ pub fn page(d: &Diagnosis) -> String {
     parameters(d, &mut out);
     experiments(d, &mut out);
     provenance(d, &mut out);
-    out.push_str("</body></html>\n");
+    out.push_str(page::TAIL);
     out
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 fn flags(d: &Diagnosis, out: &mut String) {
@@ -78,7 +65,7 @@ fn ladder(d: &Diagnosis, out: &mut String) {
         .map(|(name, g, note)| (name.to_string(), g, format!("{g:.2}  {note}")))
         .collect();
     let longest = gap.nominal.max(gap.recalibrated).max(1.0);
-    let files: Vec<&str> = gap.held_out.iter().map(|r| d.bench.runs[*r].file.as_str()).collect();
+    let files: Vec<&str> = gap.held_out.iter().map(|r| short(&d.bench.runs[*r].file)).collect();
     let _ = write!(
         out,
         "<h2>How far: gap in units of the floor, on runs that no fit has seen</h2>{}\
@@ -121,6 +108,11 @@ fn causes(d: &Diagnosis, out: &mut String) {
     out.push_str("</table></details>");
 }
 
+/// A run's file without folder and ending.
+fn short(file: &str) -> &str {
+    file.trim_start_matches("runs/").trim_end_matches(".csv")
+}
+
 fn heat_map(d: &Diagnosis, out: &mut String) {
     let mut columns: Vec<(usize, &str)> = Vec::new();
     let mut rows: BTreeMap<&str, BTreeMap<(usize, &str), (f64, bool)>> = BTreeMap::new();
@@ -133,29 +125,33 @@ fn heat_map(d: &Diagnosis, out: &mut String) {
         rows.entry(&cell.run).or_default().insert(key, (cell.gap, cell.significant));
     }
     columns.sort_unstable();
-    out.push_str("<h2>Where in the data: gap of the recalibrated model, in units of the floor</h2><div style=\"overflow-x:auto\"><table><tr><th>run</th>");
+    out.push_str(
+        "<h2>Where in the data: gap of the recalibrated model, in units of the floor</h2>",
+    );
+    let mut grid = String::from("<table><tr><th>run</th>");
     for (channel, phase) in &columns {
-        let name = CHANNELS[*channel].split("_n").next().unwrap_or("").replace('_', " ");
-        let _ = write!(out, "<th>{}<br>{phase}</th>", escape(&name));
+        let _ = write!(grid, "<th scope=\"col\">{}<br>{phase}</th>", SPOKEN[*channel]);
     }
-    out.push_str("</tr>");
+    grid.push_str("</tr>");
     for (run, cells) in &rows {
-        let _ = write!(out, "<tr><td>{}</td>", escape(run));
+        let _ = write!(grid, "<tr><td>{}</td>", escape(short(run)));
         for key in &columns {
             match cells.get(key) {
                 Some((g, significant)) => {
-                    let heat = if *significant { (g.ln() / 3.5).clamp(0.0, 1.0) } else { 0.0 };
+                    let heat =
+                        if *significant { 0.7 * (g.ln() / 3.5).clamp(0.0, 1.0) } else { 0.0 };
                     let _ = write!(
-                        out,
-                        "<td style=\"background:rgba(209,73,91,{heat:.2})\">{g:.1}</td>"
+                        grid,
+                        "<td style=\"background:rgba(213,94,0,{heat:.2})\">{g:.1}</td>"
                     );
                 }
-                None => out.push_str("<td></td>"),
+                None => grid.push_str("<td></td>"),
             }
         }
-        out.push_str("</tr>");
+        grid.push_str("</tr>");
     }
-    out.push_str("</table></div><p class=\"note\">1 is the floor; white cells are not significant (Benjamini-Hochberg, 5 %).</p>");
+    out.push_str(&page::wide("Gap by run and channel", &(grid + "</table>")));
+    out.push_str("<p class=\"note\">1 is the floor; cells without colour are not significant (Benjamini-Hochberg, 5 %).</p>");
 }
 
 fn overlays(d: &Diagnosis, out: &mut String) {
@@ -164,12 +160,11 @@ fn overlays(d: &Diagnosis, out: &mut String) {
     let names = decide::names(&d.bench, &d.fits, &best);
     let _ = write!(
         out,
-        "<h2>Runs</h2><p><span style=\"color:{}\">measured</span>, <span style=\"color:{}\">recalibrated</span>, \
-         <span style=\"color:{}\">with {}</span>. Friction force over time; edge velocity over road speed against \
-         friction force (second half); spectrum of the edge velocity.</p>",
-        COLOURS[0],
-        COLOURS[1],
-        COLOURS[2],
+        "<h2>Runs</h2><p>{} measured, {} recalibrated, {} with {}. Friction force over time; friction \
+         force over sliding speed of the run-in edge (last quarter); spectrum of the edge velocity.</p>",
+        key(0),
+        key(1),
+        key(2),
         escape(&names.join(" + "))
     );
     let simulated: Vec<Vec<Option<Record>>> = d
@@ -190,25 +185,25 @@ fn overlay(d: &Diagnosis, run: &Run, records: &[&Record], out: &mut String) {
     let _ = write!(
         out,
         "<details open><summary>{}</summary><div class=\"row\">",
-        escape(&run.spec.file)
+        escape(short(&run.spec.file))
     );
     let channel = if run.spec.mean_pressure_pa > 0.0 { FRICTION } else { VELOCITY };
     let mut traces = Vec::new();
     let mut cycles = Vec::new();
     let mut spectra = Vec::new();
     let step = 1.0 / d.campaign.plan.sampling_rate;
-    for (record, colour) in records.iter().zip(COLOURS) {
+    for (class, record) in records.iter().enumerate() {
         let millis: Vec<f64> = record.time.iter().map(|t| t * 1e3).collect();
         if let Some(values) = &record.channel[channel] {
-            traces.push((millis, values.clone(), colour));
+            traces.push((millis, values.clone(), class));
         }
         let Some(velocity) = &record.channel[VELOCITY] else { continue };
         if let (Some(force), true) = (&record.channel[FRICTION], channel == FRICTION) {
-            let half = velocity.len() / 2;
-            let slip: Vec<f64> = (half..velocity.len())
+            let late = velocity.len() - velocity.len() / 4;
+            let slip: Vec<f64> = (late..velocity.len())
                 .map(|i| road_speed(&d.campaign.plan, &run.spec, record.time[i]) - velocity[i])
                 .collect();
-            cycles.push((slip, force[half..].to_vec(), colour));
+            cycles.push((slip, force[late..].to_vec(), class));
         }
         let weights = hann(velocity.len());
         let offset = mean(velocity, &weights);
@@ -217,19 +212,24 @@ fn overlay(d: &Diagnosis, run: &Run, records: &[&Record], out: &mut String) {
             .iter()
             .map(|f| 10.0 * (power(amplitude(velocity, &weights, offset, step, *f)) + 1e-7).log10())
             .collect();
-        spectra.push((frequencies.iter().map(|f| f / 1e3).collect(), levels, colour));
+        spectra.push((frequencies.iter().map(|f| f / 1e3).collect(), levels, class));
     }
-    for (title, unit, of, width) in [
-        ("time", ["ms", if channel == FRICTION { "N" } else { "m/s" }], &traces, 430.0),
-        ("limit cycle", ["m/s", "N"], &cycles, 230.0),
-        ("spectrum", ["kHz", "dB"], &spectra, 280.0),
+    let trace = if channel == FRICTION {
+        ("friction force", "friction force in N")
+    } else {
+        ("ring-down", "edge velocity in m/s")
+    };
+    for (title, labels, of) in [
+        (trace.0, ["time in ms", trace.1], &traces),
+        ("limit cycle", ["sliding speed in m/s", "friction force in N"], &cycles),
+        ("spectrum", ["frequency in kHz", "level in dB re 1 m/s"], &spectra),
     ] {
         if !of.is_empty() {
             let of: Vec<_> = of
                 .iter()
-                .map(|(x, y, c): &(Vec<f64>, Vec<f64>, &str)| (&x[..], &y[..], *c))
+                .map(|(x, y, c): &(Vec<f64>, Vec<f64>, usize)| (&x[..], &y[..], *c))
                 .collect();
-            out.push_str(&lines(title, unit, &of, [width, 170.0]));
+            out.push_str(&lines(title, labels, &of, [360.0, 220.0]));
         }
     }
     out.push_str("</div></details>");
@@ -238,15 +238,15 @@ fn overlay(d: &Diagnosis, run: &Run, records: &[&Record], out: &mut String) {
 fn parameters(d: &Diagnosis, out: &mut String) {
     let best = diagnose::best_cause(&d.weighed);
     for (title, cause) in [("of the recalibrated model", Cause::None), ("with the effect", best)] {
-        let _ = write!(
-            out,
-            "<h2>Parameters {title}</h2><table><tr><th>parameter</th><th>prior</th><th>fitted</th>\
-             <th>std</th><th>unit</th><th>sigmas from prior</th></tr>"
+        let _ = write!(out, "<h2>Parameters {title}</h2>");
+        let mut grid = String::from(
+            "<table><tr><th>parameter</th><th>prior</th><th>fitted</th>\
+             <th>std</th><th>unit</th><th>sigmas from prior</th></tr>",
         );
         for p in json::parameters(d, &cause) {
             let number = |key: &str| p[key].as_f64().unwrap_or(f64::NAN);
             let _ = write!(
-                out,
+                grid,
                 "<tr><td>{}</td><td>{:.4e}</td><td>{:.4e}</td><td>{:.1e}</td><td>{}</td><td>{:+.2}</td></tr>",
                 p["name"].as_str().unwrap_or(""),
                 number("prior"),
@@ -256,7 +256,7 @@ fn parameters(d: &Diagnosis, out: &mut String) {
                 number("sigmas_from_prior")
             );
         }
-        out.push_str("</table>");
+        out.push_str(&page::wide(&format!("Parameters {title}"), &(grid + "</table>")));
     }
 }
 
@@ -264,10 +264,11 @@ fn experiments(d: &Diagnosis, out: &mut String) {
     if d.experiments.is_empty() {
         return;
     }
-    out.push_str("<h2>What to measure next</h2><table><tr><th>run</th><th>road speed</th><th>pressure</th><th>dwell</th><th>tells apart</th><th>expected nats</th></tr>");
+    out.push_str("<h2>What to measure next</h2>");
+    let mut grid = String::from("<table><tr><th>run</th><th>road speed</th><th>pressure</th><th>dwell</th><th>tells apart</th><th>expected nats</th></tr>");
     for e in &d.experiments {
         let _ = write!(
-            out,
+            grid,
             "<tr><td>{}</td><td>{:.3} m/s</td><td>{:.0} kPa</td><td>{:.0} ms</td><td>{} / {}</td><td>{:.1}</td></tr>",
             escape(&e.run.file),
             e.run.road_speed_m_s,
@@ -278,7 +279,7 @@ fn experiments(d: &Diagnosis, out: &mut String) {
             e.gain
         );
     }
-    out.push_str("</table>");
+    out.push_str(&page::wide("What to measure next", &(grid + "</table>")));
 }
 
 fn provenance(d: &Diagnosis, out: &mut String) {

@@ -1,95 +1,151 @@
-//! Small drawings as inline SVG.
+//! Small drawings for reports: curves as inline SVG, bars as HTML. Colours come from the page's style.
 
-/// Colours of measured, recalibrated and repaired.
-pub const COLOURS: [&str; 3] = ["#222222", "#d1495b", "#2a7f9e"];
+use crate::page::escape;
 
-/// A line: x, y, colour.
-pub type Line<'a> = (&'a [f64], &'a [f64], &'a str);
+/// A curve: x, y, and its class (0 measured, 1 recalibrated, 2 with the effect).
+pub type Line<'a> = (&'a [f64], &'a [f64], usize);
 
-/// Lines over common axes, with the ranges at the axes' ends.
-pub fn lines(title: &str, unit: [&str; 2], of: &[Line<'_>], [width, height]: [f64; 2]) -> String {
-    let (left, right, top, bottom) = (52.0, 8.0, 18.0, 26.0);
-    let range = |pick: fn(&Line<'_>) -> Vec<f64>| {
-        let all = of.iter().flat_map(pick).filter(|v| v.is_finite());
-        let (a, b) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
-        if b > a {
-            (a, b)
-        } else {
-            (a - 1.0, a + 1.0)
-        }
-    };
-    let (x0, x1) = range(|l| l.0.to_vec());
-    let (y0, y1) = range(|l| l.1.to_vec());
-    let px = |x: f64| left + (x - x0) / (x1 - x0) * (width - left - right);
-    let py = |y: f64| height - bottom - (y - y0) / (y1 - y0) * (height - top - bottom);
+const LEFT: f64 = 54.0;
+const RIGHT: f64 = 10.0;
+const TOP: f64 = 20.0;
+const BOTTOM: f64 = 36.0;
+
+/// One axis: its range and its place in the picture.
+struct Axis {
+    range: (f64, f64),
+    pixels: (f64, f64),
+}
+
+impl Axis {
+    fn over(values: impl Iterator<Item = f64>, pixels: (f64, f64)) -> Self {
+        let (a, b) = values
+            .filter(|v| v.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+        let range = if b > a { (a, b) } else { (a.min(0.0) - 1.0, a.max(0.0) + 1.0) };
+        let range = if range.0.is_finite() && range.1.is_finite() { range } else { (0.0, 1.0) };
+        Self { range, pixels }
+    }
+
+    fn at(&self, x: f64) -> f64 {
+        let ((a, b), (p, q)) = (self.range, self.pixels);
+        p + (x - a) / (b - a) * (q - p)
+    }
+
+    /// Two to seven round numbers within the range, and how many decimals they need.
+    fn ticks(&self) -> (Vec<f64>, usize) {
+        let (a, b) = self.range;
+        let power = 10f64.powf(((b - a) / 6.0).log10().floor());
+        let steps = [1.0, 2.0, 5.0, 10.0].map(|m| m * power);
+        let step = steps.into_iter().find(|s| (b - a) / s <= 6.0).unwrap_or(10.0 * power);
+        let first = (a / step).ceil() as i64;
+        let last = (b / step).floor() as i64;
+        let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
+        ((first..=last).map(|k| k as f64 * step).collect(), decimals)
+    }
+}
+
+/// Curves over common axes; `labels` are quantity and unit of x and y.
+pub fn lines(title: &str, labels: [&str; 2], of: &[Line<'_>], [width, height]: [f64; 2]) -> String {
+    let (right, bottom) = (width - RIGHT, height - BOTTOM);
+    let x_axis = Axis::over(of.iter().flat_map(|l| l.0.iter().copied()), (LEFT, right));
+    let y_axis = Axis::over(of.iter().flat_map(|l| l.1.iter().copied()), (bottom, TOP));
+    let title = escape(title);
     let mut out = format!(
-        "<svg viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\">\
-         <title>{title}</title><text x=\"{left}\" y=\"12\" class=\"t\">{title}</text>\
-         <rect x=\"{left}\" y=\"{top}\" width=\"{:.1}\" height=\"{:.1}\" class=\"frame\"/>",
-        width - left - right,
-        height - top - bottom
+        "<svg viewBox=\"0 0 {width} {height}\" width=\"{width}\" role=\"img\" aria-label=\"{title}\">\
+         <text x=\"{LEFT}\" y=\"13\" class=\"t\">{title}</text>"
     );
-    for (x, anchor) in [(x0, "start"), (x1, "end")] {
+    let (ticks, decimals) = x_axis.ticks();
+    for (at, x) in ticks.iter().map(|x| (x_axis.at(*x), x)) {
         out.push_str(&format!(
-            "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{} {}</text>",
-            px(x),
-            height - 10.0,
-            short(x),
-            unit[0]
+            "<path d=\"M{at:.1} {TOP}V{bottom}\" class=\"grid\"/>\
+             <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{x:.decimals$}</text>",
+            bottom + 13.0
         ));
     }
-    for y in [y0, y1] {
-        let at = if y == y0 { py(y) } else { py(y) + 9.0 };
+    let (ticks, decimals) = y_axis.ticks();
+    for (at, y) in ticks.iter().map(|y| (y_axis.at(*y), y)) {
         out.push_str(&format!(
-            "<text x=\"{:.1}\" y=\"{at:.1}\" text-anchor=\"end\">{}</text>",
-            left - 4.0,
-            short(y)
+            "<path d=\"M{LEFT} {at:.1}H{right}\" class=\"grid\"/>\
+             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{y:.decimals$}</text>",
+            LEFT - 4.0,
+            at + 4.0
         ));
     }
+    let middle = 0.5 * (TOP + bottom);
     out.push_str(&format!(
-        "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-        left - 4.0,
-        0.5 * height,
-        unit[1]
+        "<rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\" class=\"frame\"/>\
+         <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\
+         <text transform=\"translate(12 {middle:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
+        right - LEFT,
+        bottom - TOP,
+        0.5 * (LEFT + right),
+        height - 6.0,
+        escape(labels[0]),
+        escape(labels[1])
     ));
-    for (x, y, colour) in of {
-        let points: Vec<String> =
-            x.iter().zip(y.iter()).map(|(x, y)| format!("{:.1},{:.1}", px(*x), py(*y))).collect();
-        out.push_str(&format!(
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1\"/>",
-            points.join(" ")
-        ));
+    for (x, y, class) in of {
+        let points: Vec<String> = x
+            .iter()
+            .zip(y.iter())
+            .filter(|(x, y)| x.is_finite() && y.is_finite())
+            .map(|(x, y)| format!("{:.1},{:.1}", x_axis.at(*x), y_axis.at(*y)))
+            .collect();
+        out.push_str(&format!("<polyline points=\"{}\" class=\"l{class}\"/>", points.join(" ")));
     }
     out.push_str("</svg>");
     out
 }
 
-/// Horizontal bars with labels.
+/// A short stroke of a curve's class, for legends.
+pub fn key(class: usize) -> String {
+    format!(
+        "<svg class=\"key\" width=\"30\" height=\"10\" aria-hidden=\"true\">\
+         <path d=\"M0 5H30\" class=\"l{class}\"/></svg>"
+    )
+}
+
+/// Horizontal bars with labels and notes; a table, so that it reads well without eyes.
 pub fn bars(of: &[(String, f64, String)], longest: f64) -> String {
-    let height = 22.0 * of.len() as f64 + 6.0;
-    let mut out = format!("<svg viewBox=\"0 0 640 {height}\" width=\"640\" height=\"{height}\">");
-    for (k, (label, value, note)) in of.iter().enumerate() {
-        let y = 4.0 + 22.0 * k as f64;
-        let length = 330.0 * (value / longest).clamp(0.0, 1.0);
+    let mut out = String::from("<table class=\"bars\">");
+    for (label, value, note) in of {
+        let share = (value / longest).clamp(0.0, 1.0);
         out.push_str(&format!(
-            "<text x=\"196\" y=\"{:.0}\" text-anchor=\"end\">{label}</text>\
-             <rect x=\"202\" y=\"{y:.0}\" width=\"{length:.1}\" height=\"16\" class=\"bar\"/>\
-             <text x=\"{:.1}\" y=\"{:.0}\">{note}</text>",
-            y + 13.0,
-            208.0 + length,
-            y + 13.0
+            "<tr><th scope=\"row\">{}</th><td><span class=\"bar\" style=\"width:{:.1}%\"></span>{}</td></tr>",
+            // Blanks, so that long names break on phones.
+            escape(&label.replace('_', " ")),
+            55.0 * share,
+            escape(note)
         ));
     }
-    out.push_str("</svg>");
+    out.push_str("</table>");
     out
 }
 
-fn short(x: f64) -> String {
-    let size = x.abs();
-    if size == 0.0 || (0.01..1e4).contains(&size) {
-        let text = format!("{x:.3}");
-        text.trim_end_matches('0').trim_end_matches('.').to_string()
-    } else {
-        format!("{x:.1e}")
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_lie_within_the_range() {
+        for (range, expected) in [
+            ((0.0, 24.0), vec![0.0, 5.0, 10.0, 15.0, 20.0]),
+            ((-70.0, -61.0), vec![-70.0, -68.0, -66.0, -64.0, -62.0]),
+            ((0.05, 7.95), vec![2.0, 4.0, 6.0]),
+            ((-0.157, 0.295), vec![-0.1, 0.0, 0.1, 0.2]),
+        ] {
+            let axis = Axis { range, pixels: (0.0, 1.0) };
+            assert_eq!(axis.ticks().0, expected, "{range:?}");
+        }
+    }
+
+    #[test]
+    fn a_curve_without_a_range_or_a_number_still_makes_a_picture() {
+        for values in [vec![], vec![f64::NAN, 1.0], vec![5.0, 5.0]] {
+            let svg = lines("t", ["x", "y"], &[(&values, &values, 0)], [100.0, 100.0]);
+            assert!(
+                svg.ends_with("</svg>") && !svg.contains("NaN") && !svg.contains("inf"),
+                "{svg}"
+            );
+        }
     }
 }

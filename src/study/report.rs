@@ -1,5 +1,7 @@
 //! What a study leaves: files, pictures, and a verdict per statement of the paper.
 
+use crate::page::{self, escape};
+
 /// A statement of the paper and what our model says to it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
@@ -59,7 +61,10 @@ pub fn change(from: f64, to: f64) -> String {
 
 /// All studies as one page without anything outside of it.
 pub fn html(studies: &[Study], compound: &str) -> String {
-    let mut out = String::from(HEAD);
+    let mut out = page::head("Influences on the vibration frequencies of tire tread blocks");
+    out.push_str(
+        "<p>Kröger and Moldenhauer, ISMA 2010, repeated on this model. Dots are the paper's numbers.</p>\n",
+    );
     let all: Vec<&Verdict> = studies.iter().flat_map(|s| &s.verdicts).collect();
     let held = all.iter().filter(|v| v.holds).count();
     out.push_str(&format!(
@@ -74,27 +79,27 @@ pub fn html(studies: &[Study], compound: &str) -> String {
             escape(&study.notes)
         ));
         if !study.verdicts.is_empty() {
-            out.push_str(
+            let mut table = String::from(
                 "<table><tr><th>statement of the paper</th><th>holds</th><th>number</th></tr>\n",
             );
             for v in &study.verdicts {
                 let (class, word) = if v.holds { ("yes", "yes") } else { ("no", "no") };
-                out.push_str(&format!(
-                    "<tr><td>{}</td><td class=\"{class}\">{word}</td><td>{}</td></tr>\n",
+                table.push_str(&format!(
+                    "<tr><td>{}</td><td class=\"{class}\">{word}</td><td class=\"words\">{}</td></tr>\n",
                     escape(&v.statement),
                     escape(&v.number)
                 ));
             }
-            out.push_str("</table>\n");
+            out.push_str(&page::wide("Statements", &(table + "</table>")));
         }
-        for (_, svg) in &study.pictures {
-            out.push_str(&format!("<figure>{svg}</figure>\n"));
+        for (name, svg) in &study.pictures {
+            out.push_str(&format!("<figure>{}</figure>\n", page::wide(name, svg)));
         }
         for (name, text) in &study.tables {
             if text.lines().count() <= 40 {
                 out.push_str(&format!(
                     "<details open><summary>{name}</summary>{}</details>\n",
-                    grid(text)
+                    page::wide(name, &grid(text))
                 ));
             } else {
                 out.push_str(&format!("<p>Data: <code>{name}</code></p>\n"));
@@ -102,9 +107,10 @@ pub fn html(studies: &[Study], compound: &str) -> String {
         }
     }
     out.push_str(&format!(
-        "<h2>Compound</h2><details><summary>all parameters</summary><pre>{}</pre></details>\n</body></html>\n",
+        "<h2>Compound</h2><details><summary>all parameters</summary><pre>{}</pre></details>\n",
         escape(compound)
     ));
+    out.push_str(page::TAIL);
     out
 }
 
@@ -120,19 +126,3 @@ fn grid(csv: &str) -> String {
     let body: String = lines.map(|line| row(line, "td")).collect();
     format!("<table>{head}{body}</table>")
 }
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
-}
-
-const HEAD: &str = "<!doctype html>
-<html lang=\"en\"><head><meta charset=\"utf-8\"><title>The paper's studies</title>
-<style>
-body { font: 15px/1.5 sans-serif; max-width: 1280px; margin: 2em auto; padding: 0 1em; color: #222 }
-table { border-collapse: collapse; margin: 0.6em 0 } td, th { border: 1px solid #ccc; padding: 2px 8px }
-.yes { background: #d8f0e0 } .no { background: #f8d8d0 } figure { margin: 1em 0 }
-pre.notes { font: inherit; white-space: pre-wrap } figure svg { max-width: 100%; height: auto } pre { font-size: 12px }
-</style></head><body>
-<h1>Influences on the vibration frequencies of tire tread blocks</h1>
-<p>Kröger and Moldenhauer, ISMA 2010, repeated on this model. Dots are the paper's numbers.</p>
-";
