@@ -13,7 +13,7 @@ pub const PRIOR_NONE: f64 = 2.5;
 /// Logarithm of the odds of "unknown" before the data.
 pub const PRIOR_UNKNOWN: f64 = -1.0;
 /// Logarithm of the odds of two effects at once before the data.
-pub const PRIOR_PAIR: f64 = -7.0;
+pub const PRIOR_PAIR: f64 = -4.0;
 /// An unknown cause is taken to leave this share of ln(G²) that the recalibrated model leaves.
 pub const UNKNOWN_LEAVES: f64 = 0.7;
 /// G² up to which a recalibrated model has no gap worth a name.
