@@ -1,6 +1,6 @@
 # What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
 .DEFAULT_GOAL := help
-.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs pictures clean chain leak-check fuzz
+.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs pictures clean chain leak-check fuzz sanitize
 
 PYTHON := .venv/bin/python
 CAMPAIGNS ?= ../shared/measurements/open
@@ -39,7 +39,11 @@ fuzz: ## Hostile inputs of each kind, N of them (default 20000); failures are ke
 	@packaging/setup.sh build
 	@TREAD_FUZZ=$(or $(N),20000) cargo test --test hostile
 
-leak-check: ## 1000 times instantiate, run, free under valgrind (ten minutes)
+sanitize: ## The C hosts under AddressSanitizer, UndefinedBehaviorSanitizer and LeakSanitizer
+	@packaging/setup.sh build
+	@packaging/sanitize.sh
+
+leak-check: ## 1000 times instantiate, run, free under valgrind (some minutes)
 	@packaging/setup.sh build run test
 	@packaging/linux64.sh
 	@TREAD_LEAK_CYCLES=1000 $(PYTHON) -m pytest -q tests/python/test_c_host.py -k valgrind

@@ -208,6 +208,7 @@ class Bench:
         text = ", ".join(f"{n}: {1e3 * w:.1f}" for n, w, _ in cost)
         self.note(f"wall over simulated time in 1e-3 by contact nodes: {text}; steepest part {steepest:.2f}")
         self.add("slope of cost over contact nodes, up to 99", slope, 2, "lower")
+        pictures.nodes(OUT, [(n, w) for n, w, _ in cost], slope)
 
     def part_sweep(self) -> None:
         plan, times = OUT / "plan.toml", {1: [], 2: []}

@@ -53,6 +53,18 @@ def roofline(folder: Path, peak: float, found: dict, wall: float) -> None:
     save(figure, folder / "roofline.svg")
 
 
+def nodes(folder: Path, cost: list[tuple[int, float]], slope: float) -> None:
+    """Work per unit of simulated time over contact nodes, with the fitted slope and the goal's beside it."""
+    figure, axes = plt.subplots(figsize=(7.2, 4.6), layout="constrained")
+    counts, works = [c[0] for c in cost], [1e3 * c[1] for c in cost]
+    axes.loglog(counts, works, "o-", color=COLOURS[0], label=f"this model, slope {slope:.2f}")
+    axes.loglog(counts, [works[0] * (n / counts[0]) ** 2 for n in counts], "--", color="grey", label="slope 2, the goal")
+    axes.set_xlabel("contact nodes")
+    axes.set_ylabel("processor time over simulated time in 1e-3")
+    axes.legend()
+    save(figure, folder / "nodes.svg")
+
+
 def save(figure, path: Path) -> None:
     figure.savefig(path, metadata={"Date": None})
     plt.close(figure)

@@ -12,6 +12,11 @@ zig_works() {
         rm -f out/.zig-probe
 }
 
+# A mark of everything that a library is built from: a library with another one is out of date.
+source_mark() {
+    find src build.rs Cargo.toml Cargo.lock -type f | LC_ALL=C sort | xargs cat | sha256sum | cut -c1-16
+}
+
 # Builds shared libraries for the FMU, without debug symbols; arguments go to cargo. Prints the folder
 # where they are. The library loads on every distribution since 2012, or, without zig, on those with a
 # glibc as new as this machine's.

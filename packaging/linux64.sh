@@ -11,8 +11,10 @@ cd "$(dirname "$0")/.."
 . packaging/env.sh
 
 echo "building the library" >&2
+mark=$(source_mark) # of before: who edits while it builds gets an old library
 folder=$(build_libraries --lib --no-default-features)
 mkdir -p out/binaries/linux64
 cp "$folder/libtread_block.so" out/binaries/linux64/TreadBlock.so
+echo "$mark" > out/binaries/linux64/source
 
 packaging/merge.sh

@@ -12,6 +12,7 @@ cd "$(dirname "$0")/.."
 say() { echo "win64: $*" >&2; }
 
 packaging/apt.sh rustc-web rust-web-src gcc-mingw-w64-x86-64-win32 wine wine64
+mark=$(source_mark) # of before the build
 rustc=$(dpkg -L rustc-web | grep 'bin/rustc$')
 target=x86_64-win7-windows-gnu
 target_dir=${CARGO_TARGET_DIR:-$PWD/target}/win64
@@ -24,6 +25,7 @@ RUSTC=$rustc RUSTC_BOOTSTRAP=1 CARGO_PROFILE_RELEASE_DEBUG=0 CARGO_PROFILE_RELEA
     cargo build --quiet --release --lib --no-default-features -Zbuild-std=std,panic_unwind \
     --target "$target" --target-dir "$target_dir"
 mkdir -p out/binaries/win64
+rm -f out/binaries/win64/source
 cp "$target_dir/$target/release/tread_block.dll" out/binaries/win64/TreadBlock.dll
 
 exports=$(x86_64-w64-mingw32-objdump -p out/binaries/win64/TreadBlock.dll |
@@ -32,7 +34,7 @@ strangers=$(echo "$exports" | grep -v '^fmi2' || true)
 [ -z "$strangers" ] || { say "the DLL exports more than the interface:" $strangers; exit 1; }
 [ "$(echo "$exports" | grep -c '^fmi2')" = 44 ] || { say "the DLL does not export 44 functions"; exit 1; }
 
-[ -f out/binaries/linux64/TreadBlock.so ] || packaging/linux64.sh
+[ "$(cat out/binaries/linux64/source 2>/dev/null)" = "$mark" ] || packaging/linux64.sh
 x86_64-w64-mingw32-gcc -O1 -D__USE_MINGW_ANSI_STDIO=1 -o out/host.exe tests/c/host.c
 cc -O1 -o out/host tests/c/host.c -ldl
 
@@ -59,5 +61,7 @@ paste out/linux64.txt out/win64.txt | awk '
     END {
         printf "win64 against linux64: %d steps, largest difference %.3g of %.3g N\n", n, worst, size
         exit !(n == 40 && worst <= 1e-9 * size)
-    }'
+    }' | tee out/win64-against-linux64.txt
+# Only a library that has passed is packed.
+echo "$mark" > out/binaries/win64/source
 packaging/merge.sh
