@@ -145,7 +145,7 @@ fn a_call_that_sets_many_sets_all_or_none() {
     let references = names.map(vr);
     for bad in [[80.0, 99.0], [f64::NAN, 0.5]] {
         let fmu = Fmu::new();
-        let before = names.map(|name| default_of(name));
+        let before = names.map(default_of);
         assert_eq!(unsafe { fmi2SetReal(fmu.c, references.as_ptr(), 2, bad.as_ptr()) }, ERROR);
         // Reading is allowed in the error state, setting is not.
         assert_eq!(names.map(|name| fmu.get(name)), before, "{bad:?}");
