@@ -69,7 +69,7 @@ paper: ## The paper's studies on this model: out/paper/index.html, and their tes
 	@cargo run --quiet --release --bin tread -- study all --out out/paper
 	@cargo test --quiet --release --test study -- --include-ignored
 
-docs: ## The book (docs/src, HTML where mdbook is installed) and the Rust documentation
+docs: ## The book in docs/book (mdbook, warnings are errors) and the Rust documentation
 	@docs/build.sh
 	@RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
 

@@ -20,7 +20,7 @@ th,td:first-child{text-align:left}td.words{text-align:left}\
 .note{color:var(--faint);font-size:14px}.row{display:flex;flex-wrap:wrap;gap:8px}details{margin:.4em 0}\
 summary{cursor:pointer}pre{overflow-x:auto;font-size:13px}pre.notes{font:inherit;white-space:pre-wrap}\
 .yes{background:var(--yes)}.no{background:var(--no)}figure{margin:1em 0}\
-figure svg{display:block;width:100%;min-width:560px;height:auto;background:#fff;border-radius:4px}\
+figure svg{display:block;width:100%;min-width:860px;height:auto;background:#fff;border-radius:4px}\
 .row svg{flex:1 1 300px;max-width:385px;height:auto}\
 .row svg text{font:11px system-ui,sans-serif;fill:var(--ink)}svg .t{font-weight:600}\
 .frame{fill:none;stroke:var(--faint)}.grid{stroke:var(--rule);stroke-width:.6}\
