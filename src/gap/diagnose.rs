@@ -48,7 +48,7 @@ pub struct Gap {
     pub with_effect: f64,
     /// Share of the closable gap that the effect closes: value, 5 % and 95 %.
     pub closed: [f64; 3],
-    /// The same of a sham: the median over all other effects.
+    /// The same of a sham: the median over the other causes that were judged.
     pub sham: f64,
     /// The runs, by index.
     pub held_out: Vec<usize>,
