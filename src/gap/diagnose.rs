@@ -100,6 +100,13 @@ pub struct Diagnosis {
     pub settings: Settings,
 }
 
+impl Diagnosis {
+    /// Simulations of the fits on the start of the runs and on whole runs.
+    pub fn simulations(&self) -> usize {
+        self.bench.simulations() + self.whole.simulations()
+    }
+}
+
 /// Diagnoses the campaign in `folder`.
 ///
 /// # Errors

@@ -27,6 +27,18 @@ pub struct Fit {
     pub jacobian: Option<DMatrix<f64>>,
 }
 
+impl Fit {
+    /// The other fit if it is better.
+    #[must_use]
+    pub fn or_better(self, other: Self) -> Self {
+        if other.objective < self.objective {
+            other
+        } else {
+            self
+        }
+    }
+}
+
 /// How the optimiser may spend simulations.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {

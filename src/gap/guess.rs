@@ -15,6 +15,9 @@ const SIGNED: [f64; 6] = [-0.7, 0.7, -1.3, 1.3, -2.0, 2.0];
 const FAR: [Effort; 3] =
     [effort(2, 1, 4.0, None), effort(2, 1, 4.0, None), effort(4, 2, 1.0, None)];
 
+/// An effect in its best form, its parameters with the base model's before them, and how well they do.
+pub type FirstGuess = (Vec<Choice>, Vec<f64>, f64);
+
 /// Where fits begin: all of them from the datasheet, after the same effort.
 #[derive(Clone, Debug)]
 pub struct Guess {
@@ -23,8 +26,8 @@ pub struct Guess {
     /// How well they do.
     pub level: f64,
     /// Every effect in its best form, its parameters with the base model's before them, and how well they do; none of
-    /// effects that the symmetries of the data rule out.
-    pub effects: Vec<Option<(Vec<Choice>, Vec<f64>, f64)>>,
+    /// effects that the symmetries of the data rule out, and after [`second_guess`] of those that fell behind.
+    pub effects: Vec<Option<FirstGuess>>,
     /// What the data say without any model.
     pub findings: Vec<Finding>,
 }
@@ -96,26 +99,27 @@ pub fn second_guess(
     let base = approach(bench, evaluate(bench, &[], guess.base.clone(), of), of, &SECOND);
     guess.level = base.objective / total;
     guess.base = base.x;
-    let mut likely: Vec<&mut (Vec<Choice>, Vec<f64>, f64)> =
-        guess.effects.iter_mut().flatten().collect();
-    likely.sort_by(|a, b| a.2.total_cmp(&b.2));
+    let mut likely: Vec<&mut Option<FirstGuess>> =
+        guess.effects.iter_mut().filter(|e| e.is_some()).collect();
+    likely.sort_by(|a, b| level_of(a).total_cmp(&level_of(b)));
     for (rank, effect) in likely.into_iter().enumerate() {
-        if rank >= GUESSED {
-            // Not comparable with those that went on.
-            effect.2 = f64::INFINITY;
-            continue;
-        }
+        let Some((added, x, _)) = effect.take().filter(|_| rank < GUESSED) else { continue };
         progress(0.16 + 0.02 * rank as f64, "second guess of the most promising effects");
-        let fit = approach(bench, evaluate(bench, &effect.0, effect.1.clone(), of), of, &SECOND);
-        (effect.1, effect.2) = (fit.x, fit.objective / total);
+        let fit = approach(bench, evaluate(bench, &added, x, of), of, &SECOND);
+        *effect = Some((added, fit.x, fit.objective / total));
     }
     Ok(())
+}
+
+/// Level of a guess, of none the worst.
+fn level_of(guess: &Option<FirstGuess>) -> f64 {
+    guess.as_ref().map_or(f64::INFINITY, |g| g.2)
 }
 
 /// From one horizon to the next.
 const SECOND: [Effort; 2] = [effort(4, 2, 2.0, None), effort(4, 2, 1.0, None)];
 /// So many effects go on from their own first guess.
-pub(super) const GUESSED: usize = 5;
+const GUESSED: usize = 5;
 
 /// From the datasheet towards the optimum of an effect, on the first millisecond.
 const FIRST: [Effort; 2] = [effort(4, 2, 4.0, None), effort(3, 3, 1.0, None)];

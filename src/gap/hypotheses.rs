@@ -1,7 +1,7 @@
 //! Which effects are asked, and how well each explains the data after the same effort.
 
 use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
-use super::guess::{starts, Guess, GUESSED};
+use super::guess::{starts, Guess};
 use super::pairs::{alone, pairs};
 use super::problem::{Bench, Choice, Look};
 use super::symmetry::{self, Finding};
@@ -24,6 +24,15 @@ pub struct Hypothesis {
     pub level: f64,
     /// What `fit` has looked at last.
     pub look: Look,
+}
+
+impl Hypothesis {
+    /// Takes a fit on the runs `of` that is better than its own.
+    pub(super) fn take_better(&mut self, bench: &Bench, fit: Fit, of: &[usize]) {
+        if fit.objective < self.fit.objective {
+            *self = level(bench, fit, of);
+        }
+    }
 }
 
 /// All fits of a campaign.
@@ -141,18 +150,11 @@ pub fn fit_all(
         response.push(tried);
         singles.push(level(bench, found, of));
     }
-    let own = |at: usize| guess.effects.get(at).cloned().flatten();
-    let mut likely: Vec<_> =
-        (0..singles.len()).filter_map(|at| own(at).map(|guess| (at, guess))).collect();
-    likely.sort_by(|a, b| a.1 .2.total_cmp(&b.1 .2));
-    likely.truncate(if method.recalibrate { GUESSED } else { 0 });
-    for (at, (added, x, _)) in likely {
+    for (single, guessed) in singles.iter_mut().zip(&guess.effects) {
+        let Some((added, x, _)) = guessed else { continue };
         progress(0.54, "effects from their own first guess");
-        let fit = evaluate(bench, &added, x, of);
-        let fit = approach(bench, fit, of, &GUESS);
-        if fit.objective < singles[at].fit.objective {
-            singles[at] = level(bench, fit, of);
-        }
+        let fit = evaluate(bench, added, x.clone(), of);
+        single.take_better(bench, approach(bench, fit, of, &GUESS), of);
     }
     if method.families {
         progress(0.55, "other forms of the best effects");
@@ -161,9 +163,7 @@ pub fn fit_all(
             let effect = singles[at].added[0].effect;
             for form in 1..bench.specs[effect].forms.len() {
                 let (found, _) = start_effect(bench, &base, Choice { effect, form }, of, method);
-                if found.objective < singles[at].fit.objective {
-                    singles[at] = level(bench, found, of);
-                }
+                singles[at].take_better(bench, found, of);
             }
         }
     }
@@ -173,9 +173,7 @@ pub fn fit_all(
         if method.recalibrate {
             let mut fit = approach(bench, singles[*at].fit.clone(), of, &FINE);
             fit.jacobian = Some(full_jacobian(bench, &fit, of));
-            if fit.objective < singles[*at].fit.objective {
-                singles[*at] = level(bench, fit, of);
-            }
+            singles[*at].take_better(bench, fit, of);
         }
     }
     if method.equal_effort && method.recalibrate {
@@ -196,29 +194,16 @@ pub fn fit_all(
 /// The base model's optimum from `start`.
 pub fn recalibrate(bench: &Bench, start: Fit, of: &[usize], search: bool) -> Fit {
     let mut best = approach(bench, start, of, &HOME);
-    for heat in [3.0] {
-        if !search || best.objective < SETTLED * bench.total_weight(of) {
-            break;
-        }
-        let view = View { heat, onset_parts: None };
+    if search && best.objective >= SETTLED * bench.total_weight(of) {
+        let view = View { heat: 3.0, onset_parts: None };
         let found = explore(bench, best.clone(), of, DRAWS, view);
-        let found = approach(bench, found, of, &HOME);
-        if found.objective < best.objective {
-            best = found;
-        }
+        best = best.or_better(approach(bench, found, of, &HOME));
     }
     best
 }
 
 pub(super) fn full_jacobian(bench: &Bench, fit: &Fit, of: &[usize]) -> DMatrix<f64> {
     columns(bench, fit, &(0..fit.x.len()).collect::<Vec<_>>(), of)
-}
-
-fn better(a: Option<Fit>, b: Fit) -> Option<Fit> {
-    match a {
-        Some(a) if a.objective <= b.objective => Some(a),
-        _ => Some(b),
-    }
 }
 
 pub(super) fn level(bench: &Bench, fit: Fit, of: &[usize]) -> Hypothesis {
@@ -253,7 +238,10 @@ pub(super) fn start_effect(
         if k == 0 {
             tried = (coordinates[at].value(fit.x[at]).abs(), caused(bench, base, &fit));
         }
-        best = better(best, fit);
+        best = Some(match best {
+            Some(best) => best.or_better(fit),
+            None => fit,
+        });
     }
     let Some(mut fit) = best else { return (base.clone(), tried) };
     let own: Vec<usize> = if method.recalibrate { (at..fit.x.len()).collect() } else { vec![at] };
@@ -294,9 +282,7 @@ fn again(
     for at in order.iter().take(2) {
         let x = singles[*at].fit.x[..size].to_vec();
         let trial = improve(bench, evaluate(bench, &[], x, of), of, AGAIN);
-        if trial.objective < base.objective {
-            base = trial;
-        }
+        base = base.or_better(trial);
     }
     if base.jacobian.is_none() {
         base.jacobian = Some(full_jacobian(bench, &base, of));

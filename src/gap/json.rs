@@ -78,7 +78,7 @@ pub fn document(d: &Diagnosis) -> Json {
                 .collect::<Vec<_>>(),
             "seed": d.settings.seed,
             "version": env!("CARGO_PKG_VERSION"),
-            "simulations": bench.simulations() + d.whole.simulations(),
+            "simulations": d.simulations(),
             "seconds": (d.seconds * 10.0).round() / 10.0,
         },
     })

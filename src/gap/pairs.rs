@@ -17,9 +17,7 @@ pub(super) fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis]
     let x = pair.fit.x[..bench.coordinates(&added).len()].to_vec();
     let fit = approach(bench, evaluate(bench, &added, x, of), of, &FINE);
     for single in singles.iter_mut().filter(|s| s.added[0].effect == added[0].effect) {
-        if fit.objective < single.fit.objective {
-            *single = level(bench, fit.clone(), of);
-        }
+        single.take_better(bench, fit.clone(), of);
     }
 }
 
@@ -56,9 +54,7 @@ pub(super) fn pairs(
     }
     if let Some(at) = ranked(&out).first().copied() {
         let fit = approach(bench, out[at].fit.clone(), of, &FINE);
-        if fit.objective < out[at].fit.objective {
-            out[at] = level(bench, fit, of);
-        }
+        out[at].take_better(bench, fit, of);
     }
     out.sort_by(|a, b| a.level.total_cmp(&b.level));
     out.truncate(PAIRED);

@@ -39,14 +39,10 @@ pub fn polish(
         let mut found = once(whole, &hypothesis.fit, of);
         if rank == 0 {
             let again = approach(whole, Fit { jacobian: None, ..found.clone() }, of, &CROSS);
-            if again.objective < found.objective {
-                found = again;
-            }
+            found = found.or_better(again);
             let x = found.x[..base.x.len()].to_vec();
             let again = approach(whole, evaluate(whole, &[], x, of), of, &CROSS);
-            if again.objective < base.objective {
-                base = again;
-            }
+            base = base.or_better(again);
         }
         hypothesis.fit = found;
         hypothesis.look = Look::Whole;
@@ -59,9 +55,5 @@ pub fn polish(
 fn once(whole: &Bench, fit: &Fit, of: &[usize]) -> Fit {
     let start = evaluate(whole, &fit.added, fit.x.clone(), of);
     let found = approach(whole, start.clone(), of, &SCHEDULE);
-    if found.objective < start.objective {
-        found
-    } else {
-        start
-    }
+    start.or_better(found)
 }

@@ -290,7 +290,7 @@ fn provenance(d: &Diagnosis, out: &mut String) {
          of a mechanism.</p>",
         env!("CARGO_PKG_VERSION"),
         d.settings.seed,
-        d.bench.simulations() + d.whole.simulations(),
+        d.simulations(),
         d.seconds,
         d.campaign.hash(),
         d.campaign.runs.len(),

@@ -144,7 +144,7 @@ impl Simulator {
         sampler: &mut Sampler,
     ) -> Result<(), Fault> {
         let step = 1.0 / self.plan.sampling_rate;
-        let scenario = Scenario::Slide(motion(&self.plan, spec, 0.0));
+        let scenario = Scenario::Slide(motion(&self.plan, spec));
         // Whole samples only: a scenario would end with a shorter step.
         let duration = rows(until, step) as f64 * step;
         let plan = scenario::Plan { step, duration, inputs: Inputs::Exact };
@@ -159,21 +159,21 @@ impl Simulator {
 }
 
 /// Road motion and load of a run.
-fn motion(plan: &Plan, spec: &RunSpec, dwell: f64) -> Slide {
+fn motion(plan: &Plan, spec: &RunSpec) -> Slide {
     let end = spec.road_speed_end_m_s.unwrap_or(spec.road_speed_m_s);
     Slide {
         speed: spec.road_speed_m_s,
         speed_end: end,
         sweep: if spec.kind == RunKind::SpeedRamp { spec.duration_s } else { 0.0 },
         start_ramp: plan.rig.start_ramp_s,
-        dwell,
+        dwell: 0.0,
         load: spec.mean_pressure_pa * plan.block.length_m * plan.block.width_m,
     }
 }
 
 /// Road speed \[m/s\] of a run at `t` \[s\].
 pub fn road_speed(plan: &Plan, spec: &RunSpec, t: f64) -> f64 {
-    motion(plan, spec, 0.0).road_speed(t)
+    motion(plan, spec).road_speed(t)
 }
 
 /// Number of samples after the first.
