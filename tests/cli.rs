@@ -84,6 +84,19 @@ fn what_init_writes_is_checked_simulated_and_plotted() {
 }
 
 #[test]
+fn a_sweep_is_checked_with_the_run_of_each_point() {
+    let folder = Folder::new("check-sweep");
+    let plan = format!("{SLIDE}[sweep]\nmethod = \"grid\"\n[sweep.vary]\n");
+    let vary = "\"rubber.poisson_ratio\" = [0.45, 0.49]\n";
+    folder.write("good.toml", &format!("{plan}{vary}"));
+    assert!(folder.fine(&["check", "good.toml"]).contains("a good sweep"));
+    folder.write("bad.toml", &format!("{plan}{}", vary.replace("0.49", "0.6")));
+    let checked = folder.tread(&["check", "bad.toml"]);
+    assert_eq!(checked.status.code(), Some(1), "{}", stderr(&checked));
+    tells(&String::from_utf8_lossy(&checked.stdout), &["rubber.poisson_ratio", "0.6"]);
+}
+
+#[test]
 fn the_csv_has_the_outputs_of_the_fmu_and_a_row_per_communication_step() {
     let folder = Folder::new("columns");
     folder.write("run.toml", SLIDE);

@@ -95,9 +95,17 @@ fn every_page_of_the_book_is_in_its_table_of_contents() {
 }
 
 #[test]
-fn the_shell_parts_of_the_tutorials_run() {
-    for name in ["slide", "roll", "wear"] {
-        let text = read(&root().join(format!("docs/src/tutorials/{name}.md")));
+fn the_shell_parts_of_the_tutorials_and_of_how_to_run() {
+    for page in [
+        "tutorials/slide",
+        "tutorials/roll",
+        "tutorials/wear",
+        "tutorials/sweep",
+        "tutorials/gap",
+        "how-to",
+    ] {
+        let name = page.rsplit('/').next().unwrap();
+        let text = read(&root().join(format!("docs/src/{page}.md")));
         let script: String =
             text.split("```sh\n").skip(1).filter_map(|part| part.split("```").next()).collect();
         let folder =

@@ -7,12 +7,13 @@ use crate::error::{Fault, Problem};
 use crate::gap::campaign::Campaign;
 use crate::params::load;
 use crate::scenario::{belt_csv, config, Roll};
+use crate::sweep;
 
 /// What was typed.
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A run (TOML with a [run] table), a parameter file (TOML without one), a belt path (CSV), or a
-    /// measured campaign (its folder, campaign.toml or zip)
+    /// A run (TOML with a [run] table), a sweep (with a [sweep] table, too), a parameter file (TOML without
+    /// them), a belt path (CSV), or a measured campaign (its folder, campaign.toml or zip)
     file: PathBuf,
     /// Tell the problems as JSON
     #[arg(long)]
@@ -61,12 +62,20 @@ fn check_campaign(place: &Path) -> Result<(), Fault> {
 
 fn check_toml(file: &Path) -> Result<(&'static str, Result<(), Fault>), Fault> {
     let text = config::read_text(file)?;
-    let is_run = text.parse::<toml::Table>().is_ok_and(|t| t.contains_key("run"));
-    Ok(if is_run {
+    let document = text.parse::<toml::Table>().unwrap_or_default();
+    Ok(if document.contains_key("sweep") {
+        ("sweep", check_sweep(file))
+    } else if document.contains_key("run") {
         ("run", config::read(file, &[]).map(|_| ()))
     } else {
         ("parameter file", load::from_toml(&text).map(|_| ()))
     })
+}
+
+/// The plan, and the run of every point up to the first that is wrong.
+fn check_sweep(file: &Path) -> Result<(), Fault> {
+    let plan = sweep::Plan::read(file)?;
+    (0..plan.points.len()).try_for_each(|point| plan.config(point).map(|_| ()))
 }
 
 fn plain(file: &Path, kind: &str, problems: &[Problem]) -> String {

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 use super::output::{self, Done, Stop};
 use crate::error::Fault;
 use crate::params::{load, Params};
+use crate::study::identify::objective::Fineness;
+use crate::study::identify::residual::{self, Explained, Question};
 use crate::study::identify::run::{identify, Progress, Task};
 use crate::study::identify::{report, space};
 use crate::study::paper::{Column, TABLE_1};
@@ -15,6 +17,7 @@ Examples:
   tread identify --out out/identify
   tread identify --columns h10l15,h6l45 --out out/cross
   tread identify --law rational --evaluations 4000 --out out/rational
+  tread identify --start compounds/paper.toml --evaluations 0 --hops 40 --rounds 14 --out out/hops
   tread identify --start compounds/paper.toml --evaluations 0 --out out/polish";
 
 /// What was typed.
@@ -48,7 +51,10 @@ pub struct Arguments {
     /// Candidates per generation of the global search; 0: by the number of unknowns
     #[arg(long, default_value_t = 0)]
     population: usize,
-    /// Rounds of the local search
+    /// Hops along what the table hardly pins down, each followed by a local search
+    #[arg(long, default_value_t = 0)]
+    hops: usize,
+    /// Rounds of a local search
     #[arg(long, default_value_t = 8)]
     rounds: usize,
     /// Solve the local search as coarsely as the global one
@@ -61,6 +67,9 @@ pub struct Arguments {
     /// Seed of the global search
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Fit every effect to what is left, with the same effort each, and say what it explains
+    #[arg(long)]
+    effects: bool,
     /// Threads; all cores if not given
     #[arg(long)]
     threads: Option<usize>,
@@ -76,10 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     let best = arguments.out.join("best.toml");
     let found = pool.install(|| {
         identify(&task, &Reductions::default(), |progress| {
-            eprintln!(
-                "{} {:6} tables, cost {:.4}",
-                progress.stage, progress.evaluations, progress.cost
-            );
+            eprintln!("{:6} {:6}, cost {:.4}", progress.stage, progress.evaluations, progress.cost);
             keep(&best, progress);
         })
     })?;
@@ -87,7 +93,22 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     let report = report::markdown(&task, &found);
     output::to(Some(&arguments.out.join("report.md")), report.as_bytes())?;
     eprint!("{report}");
+    if arguments.effects {
+        let answers = pool.install(|| explain(&task, &found.params));
+        let table = residual::markdown(&answers);
+        output::to(Some(&arguments.out.join("residual.md")), table.as_bytes())?;
+        eprint!("{table}");
+    }
     Ok(Done::Fine)
+}
+
+/// Every effect on what the fit leaves.
+fn explain(task: &Task, fit: &Params) -> Vec<Explained> {
+    let fineness = if task.coarse { Fineness::COARSE } else { Fineness::FINE };
+    let (unknowns, columns) = (&task.unknowns, &task.columns);
+    let question = Question { fit, unknowns, columns, fineness, rounds: task.rounds };
+    question
+        .ask(&Reductions::default(), |name, done, of| eprintln!("effect {done:2} of {of}: {name}"))
 }
 
 /// Keeps the best so far, so that an interrupted search loses nothing; the final set is written
@@ -138,6 +159,7 @@ fn task(arguments: &Arguments) -> Result<Task, Fault> {
         evaluations: arguments.evaluations,
         spread: arguments.spread,
         population: arguments.population,
+        hops: arguments.hops,
         rounds: arguments.rounds,
         coarse: arguments.coarse,
         fine: arguments.fine,

@@ -69,6 +69,7 @@ impl Law {
                 fast: Exponential { common, exponent: params.decay_exponent },
                 slow_share: params.slow_share,
                 slow_speed: params.slow_speed,
+                slow_exponent: params.slow_exponent,
             }),
             (FrictionForm::Table, Some(table)) => {
                 let mut table = table.clone();
@@ -156,39 +157,38 @@ pub struct Exponential {
 impl FrictionLaw for Exponential {
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack) -> Mu {
-        let (fall, slope) = self.fall(v);
+        let (fall, slope) = stretched(v, self.common.decay_speed, self.exponent);
         self.common.mu(p, v, fall, slope)
     }
 }
 
-impl Exponential {
-    /// The falling part and |v| times its derivative by |v|.
-    #[inline(always)]
-    fn fall(&self, v: Pack) -> (Pack, Pack) {
-        let ratio = v.abs() * Pack::splat(1.0 / self.common.decay_speed);
-        let power = if self.exponent == 1.0 { ratio } else { power(ratio, self.exponent) };
-        let fall = (-power).exp();
-        (fall, -(Pack::splat(self.exponent) * power * fall))
-    }
+/// exp(−(|v|/`speed`)^`exponent`) and |v| times its derivative by |v|.
+#[inline(always)]
+fn stretched(v: Pack, speed: f64, exponent: f64) -> (Pack, Pack) {
+    let ratio = v.abs() * Pack::splat(1.0 / speed);
+    let power = if exponent == 1.0 { ratio } else { power(ratio, exponent) };
+    let fall = (-power).exp();
+    (fall, -(Pack::splat(exponent) * power * fall))
 }
 
-/// Two exponentials: fall = (1 − s) exp(−(|v|/v_d)^γ) + s exp(−|v|/v_s), a fast part that excites at
-/// small sliding speeds and a slow one that goes on while the block slips at metres per second.
+/// Two exponentials: fall = (1 − s) exp(−(|v|/v_d)^γ) + s exp(−(|v|/v_s)^γ_s), each a fall around a speed
+/// of its own: sharp for a large exponent, spread over decades for a small one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TwoExponentials {
     fast: Exponential,
     slow_share: f64,
     slow_speed: f64,
+    slow_exponent: f64,
 }
 
 impl FrictionLaw for TwoExponentials {
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack) -> Mu {
         let (share, rest) = (Pack::splat(self.slow_share), Pack::splat(1.0 - self.slow_share));
-        let (fall, slope) = self.fast.fall(v);
-        let ratio = v.abs() * Pack::splat(1.0 / self.slow_speed);
-        let slow = share * (-ratio).exp();
-        self.fast.common.mu(p, v, rest.mul_add(fall, slow), rest * slope - ratio * slow)
+        let (fast, fast_slope) = stretched(v, self.fast.common.decay_speed, self.fast.exponent);
+        let (slow, slow_slope) = stretched(v, self.slow_speed, self.slow_exponent);
+        let fall = rest.mul_add(fast, share * slow);
+        self.fast.common.mu(p, v, fall, rest.mul_add(fast_slope, share * slow_slope))
     }
 }
 

@@ -130,6 +130,8 @@ pub struct Friction {
     pub slow_share: f64,
     /// Speed over which the slow share falls \[m/s\].
     pub slow_speed: f64,
+    /// Exponent of the slow share of two exponentials: exp(−(|v|/slow_speed)^g).
+    pub slow_exponent: f64,
     /// File of a measured characteristic (CSV: pressure_pa, speed_m_s, mu); empty: none.
     pub table_file: String,
 }
@@ -149,6 +151,7 @@ impl Default for Friction {
             bell_steepness: 0.7,
             slow_share: 0.5,
             slow_speed: 3.0,
+            slow_exponent: 1.0,
             table_file: String::new(),
         }
     }

@@ -249,6 +249,7 @@ static BASE: &[ParamSpec] = &[
     real_param!("friction.bell_steepness", friction.bell_steepness, "1", None, 0.01, 10.0, 0.7, Tunable, "Steepness k of the log-bell law exp(-(k log10(|v|/decay_speed))^2)"),
     real_param!("friction.slow_share", friction.slow_share, "1", None, 0.0, 1.0, 0.5, Tunable, "Share of the fall that is slow in the law of two exponentials"),
     real_param!("friction.slow_speed", friction.slow_speed, "m/s", MM_S, 1e-3, 1000.0, 3.0, Tunable, "Speed over which the slow share falls"),
+    real_param!("friction.slow_exponent", friction.slow_exponent, "1", None, 0.1, 5.0, 1.0, Tunable, "Exponent of the slow share: exp(-(|v|/slow_speed)^g)"),
     ParamSpec {
         name: "friction.table_file", kind: Kind::Text, variability: Variability::Fixed,
         doc: "CSV of a measured characteristic (pressure_pa, speed_m_s, mu) for the form table",

@@ -50,8 +50,8 @@ pub struct Point {
 pub struct Observed {
     /// Metrics of the settled part.
     pub metrics: StickSlip,
-    /// Rate at which the vibration grows (or dies, negative) over the run \[1/s\].
-    pub growth: f64,
+    /// Rate at which a vibration dies \[1/s\], see [`death_rate`].
+    pub death_rate: f64,
 }
 
 /// Silence is certain, and the run over, when the velocity swings by less than this share of the
@@ -59,6 +59,9 @@ pub struct Observed {
 const DEAD: f64 = 2e-3;
 /// Time over which amplitudes are taken \[s\]; one period of the slowest stick-slip of the paper.
 const WINDOW: f64 = 2e-3;
+/// Time over which amplitudes are taken while a vibration dies \[s\]; one period of 2 kHz, below which blocks
+/// of the paper stick.
+const SHORT_WINDOW: f64 = 0.5e-3;
 
 /// Slides a block; ends early when all vibration has died.
 ///
@@ -69,12 +72,14 @@ pub fn observe(params: &Params, reductions: &Reductions, point: Point) -> Result
     let scenario = Scenario::Slide(Slide::constant(point.speed, load));
     let mut block = TreadBlock::with_reduction(params, reductions.of(params)?)?;
     let mut recorder = Recorder::default();
-    let mut swings = Swings::new(point.step);
+    let mut swings = Swings::new(WINDOW, point.step);
+    let mut short = Swings::new(SHORT_WINDOW, point.step);
     let plan = Plan { step: point.step, duration: point.duration, inputs: Inputs::Exact };
     let outcome = scenario::run(&mut block, &scenario, &plan, |time, block| {
         let outputs = block.outputs();
         recorder.push(time, outputs);
         swings.push(outputs.run_in_velocity[0]);
+        short.push(outputs.run_in_velocity[0]);
         if time > 2.0 * WINDOW && swings.last() < DEAD * point.speed.abs() {
             return Err(died());
         }
@@ -88,7 +93,7 @@ pub fn observe(params: &Params, reductions: &Reductions, point: Point) -> Result
     if outcome.is_err() {
         metrics.frequency = 0.0;
     }
-    Ok(Observed { metrics, growth: swings.growth() })
+    Ok(Observed { metrics, death_rate: death_rate(&short.swings, point.speed.abs()) })
 }
 
 /// Share of the touching stations that slide slower than `bound` \[m/s\]: quasi-sticking creeps, so the
@@ -104,18 +109,30 @@ fn died() -> Fault {
     Fault::File { path: String::new(), reason: "vibration died".to_string() }
 }
 
+/// Rate \[1/s\] at which the swings (one per [`SHORT_WINDOW`]) fall from the road's speed, below which nothing
+/// sticks any more, to a tenth of it: what is left then is the carriage, which settles in its own time
+/// whatever friction does. 0 if they do not fall.
+fn death_rate(swings: &[f64], road_speed: f64) -> f64 {
+    let Some(from) = swings.iter().rposition(|s| *s >= 0.8 * road_speed) else { return 0.0 };
+    let fallen = swings.iter().skip(from).position(|s| *s <= 0.1 * road_speed);
+    let windows = fallen.unwrap_or(swings.len() - 1 - from);
+    if windows == 0 {
+        return 0.0;
+    }
+    (swings[from] / swings[from + windows]).ln() / (windows as f64 * SHORT_WINDOW)
+}
+
 /// Peak-to-peak velocity window by window.
 struct Swings {
     length: usize,
     current: Vec<f64>,
-    window: f64,
     swings: Vec<f64>,
 }
 
 impl Swings {
-    fn new(step: f64) -> Self {
-        let length = (WINDOW / step).round().max(4.0) as usize;
-        Self { length, current: Vec::with_capacity(length), window: WINDOW, swings: Vec::new() }
+    fn new(window: f64, step: f64) -> Self {
+        let length = (window / step).round().max(4.0) as usize;
+        Self { length, current: Vec::with_capacity(length), swings: Vec::new() }
     }
 
     fn push(&mut self, velocity: f64) {
@@ -129,16 +146,19 @@ impl Swings {
     fn last(&self) -> f64 {
         self.swings.last().copied().unwrap_or(f64::INFINITY)
     }
+}
 
-    /// Rate \[1/s\] of the logarithm of the swing, from the second window to the last.
-    fn growth(&self) -> f64 {
-        let (Some(first), Some(last)) = (self.swings.get(1), self.swings.last()) else {
-            return 0.0;
-        };
-        let count = self.swings.len() - 2;
-        if count == 0 || *first <= 0.0 || *last <= 0.0 {
-            return 0.0;
-        }
-        (last / first).ln() / (count as f64 * self.window)
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rate_of_a_dying_vibration_is_found_above_what_the_carriage_leaves() {
+        // exp(-4000 t) for 10 ms over a slow rest.
+        let swing = |k: usize| 2.0 * (-4000.0 * SHORT_WINDOW * k as f64).exp() + 0.001;
+        let swings: Vec<f64> = (0..20).map(swing).collect();
+        let rate = death_rate(&swings, 0.3);
+        assert!((rate / 4000.0 - 1.0).abs() < 0.1, "{rate}");
+        assert_eq!(death_rate(&[0.7; 9], 0.3), 0.0);
     }
 }

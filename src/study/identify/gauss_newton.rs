@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-use super::objective::Problem;
+use super::objective::{Problem, OUTLIER};
 
 /// Step of the finite differences in the unit interval: large enough for the noise of a measured
 /// frequency (about 1e-4), small enough for the curvature.
@@ -23,7 +23,7 @@ pub struct Local {
 fn weights(residuals: &[f64]) -> DVector<f64> {
     DVector::from_iterator(
         residuals.len(),
-        residuals.iter().map(|r| (1.0 + (r / 0.05).powi(2)).powf(-0.5)),
+        residuals.iter().map(|r| (1.0 + (r / OUTLIER).powi(2)).powf(-0.5)),
     )
 }
 
@@ -40,7 +40,7 @@ pub fn jacobian(problem: &Problem<'_>, x: &[f64], residuals: &[f64]) -> DMatrix<
                 residuals.len(),
                 moved.iter().zip(residuals).map(|(b, a)| {
                     let slope = (b - a) / step;
-                    if (b - a).abs() > 0.2 {
+                    if (b - a).abs() > 0.15 {
                         0.0
                     } else {
                         slope

@@ -2,7 +2,9 @@
 
 pub mod cma;
 pub mod gauss_newton;
+pub mod hops;
 pub mod objective;
 pub mod report;
+pub mod residual;
 pub mod run;
 pub mod space;

@@ -79,21 +79,29 @@ impl Compared {
         (self.hz() > 0.0) == (self.cell() != Cell::Silent)
     }
 
-    /// Residual: the logarithm of the frequency ratio, or a penalty that grows with how clearly the
-    /// block is silent (or loud) where it should not be.
+    /// Residual: the logarithm of the frequency ratio; where the block is silent (or loud) and should not be, a
+    /// small step and then what grows with how clearly it is, so that a search feels which way is out.
     pub fn residual(&self) -> f64 {
         let Some(observed) = &self.observed else { return 1.0 };
         let (hz, swing) = (self.hz(), observed.metrics.velocity_amplitude);
-        let death = (-observed.growth / 1000.0).clamp(0.0, 4.0);
+        let share = (observed.death_rate / RATE_OF_SLOPE).min(0.25);
         match self.cell() {
             Cell::Hz(paper) if hz > 0.0 => snap_ratio(hz, paper).clamp(-1.0, 1.0),
-            Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => 0.5 + 0.5 * death,
+            Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => WRONG + 2.0 * share,
             Cell::Between(low, high) => (hz / low).ln().min(0.0) + (hz / high).ln().max(0.0),
             _ if hz <= 0.0 => 0.0,
-            _ => 0.2 + 0.5 * (swing / SPEEDS[self.row]).min(4.0),
+            _ => WRONG + 0.3 * (swing / SPEEDS[self.row] - STICKS).clamp(0.0, 4.0),
         }
     }
 }
+
+/// Residual of a cell that is only just silent or loud against the paper.
+const WRONG: f64 = 0.12;
+/// Rate at which a vibration dies \[1/s\] over the share of the slope of friction that it wants: half of βω², at
+/// β = 1e-4 s and 5 kHz.
+const RATE_OF_SLOPE: f64 = 5e4;
+/// Swing of the velocity over the road's speed at which a vibration begins to stick.
+const STICKS: f64 = 1.8;
 
 /// Logarithm of the frequency ratio. Where every second or third snap differs a little, the period
 /// counts that many snaps: then the rate of snaps is compared, at a small price.
@@ -175,6 +183,9 @@ pub fn modulus_over_density(
     Ok((sum / count).exp())
 }
 
+/// Residual from which on the cost grows linearly.
+pub const OUTLIER: f64 = 0.15;
+
 /// The problem that a search solves: residuals of the cells over the unknowns.
 pub struct Problem<'a> {
     /// What is not unknown.
@@ -199,16 +210,20 @@ impl Problem<'_> {
 
     /// Residuals at `x`, cell by cell.
     pub fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        compare(&self.params(x), self.columns, &self.fineness, LENGTHEN, self.reductions)
-            .iter()
-            .map(Compared::residual)
-            .collect()
+        self.compare(x).iter().map(Compared::residual).collect()
     }
 
-    /// Cost of residuals: pseudo-Huber at 5 %, so that no single cell rules, and a wall for leaving
-    /// the unit cube.
+    /// All cells at `x`.
+    pub fn compare(&self, x: &[f64]) -> Vec<Compared> {
+        compare(&self.params(x), self.columns, &self.fineness, LENGTHEN, self.reductions)
+    }
+
+    /// Cost of residuals: half their squares in units of 5 %, but from [`OUTLIER`] on (pseudo-Huber)
+    /// linear, so that no single cell rules, and a wall for leaving the unit cube.
     pub fn cost(residuals: &[f64], x: &[f64]) -> f64 {
-        let fit: f64 = residuals.iter().map(|r| (1.0 + (r / 0.05).powi(2)).sqrt() - 1.0).sum();
+        let unit = (OUTLIER / 0.05).powi(2);
+        let one = |r: &f64| unit * ((1.0 + (r / OUTLIER).powi(2)).sqrt() - 1.0);
+        let fit: f64 = residuals.iter().map(one).sum();
         let outside: f64 = x.iter().map(|x| (x - x.clamp(0.0, 1.0)).powi(2)).sum();
         fit + 1e3 * outside
     }

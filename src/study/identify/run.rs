@@ -2,6 +2,7 @@
 
 use super::cma::Cma;
 use super::gauss_newton::{improve, Local};
+use super::hops::Hops;
 use super::objective::{modulus_over_density, Fineness, Problem};
 use super::space::{places, Unknown};
 use crate::error::Fault;
@@ -24,7 +25,9 @@ pub struct Task {
     pub spread: f64,
     /// Candidates per generation; 0: by the number of unknowns.
     pub population: usize,
-    /// Rounds of the local search.
+    /// Hops of the global search, each followed by a local one.
+    pub hops: usize,
+    /// Rounds of a local search.
     pub rounds: usize,
     /// Solve the local search coarsely, too.
     pub coarse: bool,
@@ -37,9 +40,9 @@ pub struct Task {
 /// A step of the identification as it is told.
 #[derive(Clone, Debug)]
 pub struct Progress<'a> {
-    /// `global` or `local`.
+    /// `global`, `hop` or `local`.
     pub stage: &'static str,
-    /// Tables simulated so far in the global search.
+    /// Tables simulated so far in the global search, or hops made.
     pub evaluations: usize,
     /// Best cost so far.
     pub cost: f64,
@@ -83,6 +86,10 @@ pub fn identify(
         let fineness = if task.fine { Fineness::FINE } else { Fineness::COARSE };
         x = global(task, &problem(fineness), x, &mut told);
     }
+    if task.hops > 0 {
+        let fineness = if task.fine { Fineness::FINE } else { Fineness::COARSE };
+        x = hop(task, &problem(fineness), x, &mut told);
+    }
     let fine = problem(if task.coarse { Fineness::COARSE } else { Fineness::FINE });
     let local = improve(&fine, x, task.rounds, |x, cost| {
         let best = &fine.params(x);
@@ -92,6 +99,23 @@ pub fn identify(
     params.wear = task.start.wear.clone();
     let cost = Problem::cost(&local.residuals, &local.x);
     Ok(Identified { params, local, cost })
+}
+
+/// Hops from `start`; returns the best place seen.
+fn hop(
+    task: &Task,
+    problem: &Problem<'_>,
+    start: Vec<f64>,
+    told: &mut impl FnMut(&Progress<'_>),
+) -> Vec<f64> {
+    let mut hops = Hops::new(improve(problem, start, task.rounds, |_, _| {}), task.seed);
+    for evaluations in 1..=task.hops {
+        hops.hop(problem, task.rounds);
+        let (best, cost) = hops.best();
+        let best = &problem.params(&best.x);
+        told(&Progress { stage: "hop", evaluations, cost, best });
+    }
+    hops.best().0.x.clone()
 }
 
 /// Covariance matrix adaptation from `start`; returns the best place seen.

@@ -49,8 +49,8 @@ const fn log(name: &'static str, low: f64, high: f64) -> Unknown {
 /// Unknowns whatever the friction law.
 const COMMON: [Unknown; 10] = [
     linear("friction.mu_inf", 0.02, 1.2),
-    log("friction.mu_drop", 0.1, 3.0),
-    log("friction.decay_speed", 0.05, 20.0),
+    log("friction.mu_drop", 0.1, 6.0),
+    log("friction.decay_speed", 0.05, 100.0),
     log("friction.smoothing_speed", 3e-4, 3e-2),
     linear("friction.pressure_exponent", -0.4, 0.2),
     log("rubber.stiffness_damping", 5e-6, 2e-4),
@@ -68,9 +68,10 @@ pub fn unknowns(form: FrictionForm) -> Vec<Unknown> {
         FrictionForm::Rational => out.push(linear("friction.rational_exponent", 0.25, 2.5)),
         FrictionForm::LogBell => out.push(linear("friction.bell_steepness", 0.1, 1.5)),
         FrictionForm::TwoExponentials => out.extend([
-            linear("friction.decay_exponent", 0.25, 1.5),
-            linear("friction.slow_share", 0.0, 0.9),
-            log("friction.slow_speed", 0.5, 50.0),
+            log("friction.decay_exponent", 0.2, 4.0),
+            linear("friction.slow_share", 0.0, 0.95),
+            log("friction.slow_speed", 0.1, 100.0),
+            log("friction.slow_exponent", 0.2, 4.0),
         ]),
         FrictionForm::Table => {}
     }
