@@ -10,8 +10,8 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt
 
 # Okabe and Ito's colours, which colour-blind readers can tell apart.
-COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"]
-MARKS = "osD^vP"
+COLOURS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#7F7F7F"]
+MARKS = "osD^vPX*"
 plt.rcParams.update({"svg.hashsalt": "tread", "font.size": 10, "axes.grid": True, "grid.alpha": 0.3})
 
 
@@ -21,12 +21,13 @@ def work_precision(folder: Path, points: list[dict], limit: float) -> None:
         own = [p for p in points if p["solver"] == solver]
         # An error of nothing is below what two runs can tell apart.
         errors = [max(p["error_percent"], 1e-4) for p in own]
-        axes.loglog(errors, [p["seconds_per_ms"] for p in own], MARKS[at % 6] + "-",
-                    color=COLOURS[at % 6], label=solver)
+        axes.loglog(errors, [p["seconds_per_ms"] for p in own], MARKS[at % len(MARKS)] + "-",
+                    color="black" if at == 0 else COLOURS[(at - 1) % len(COLOURS)],
+                    linewidth=2.5 if at == 0 else 1.5, label=solver)
     axes.axvline(limit, color="grey", linestyle="--")
     axes.annotate(" 0.5 %", (limit, 1), xycoords=("data", "axes fraction"), va="top")
     axes.axhline(1e-3, color="grey", linestyle=":")
-    axes.annotate("real time", (1, 1e-3), xycoords=("axes fraction", "data"), ha="right", va="bottom")
+    axes.annotate("real time", (0.01, 1e-3), xycoords=("axes fraction", "data"), ha="left", va="bottom")
     axes.set_xlabel("error of stick-slip frequency or mean friction in %, the larger")
     axes.set_ylabel("seconds per simulated ms")
     axes.legend()
@@ -60,7 +61,7 @@ def nodes(folder: Path, cost: list[tuple[int, float]], slope: float) -> None:
     axes.loglog(counts, works, "o-", color=COLOURS[0], label=f"this model, slope {slope:.2f}")
     axes.loglog(counts, [works[0] * (n / counts[0]) ** 2 for n in counts], "--", color="grey", label="slope 2, the goal")
     axes.set_xlabel("contact nodes")
-    axes.set_ylabel("processor time over simulated time in 1e-3")
+    axes.set_ylabel("milliseconds of processor time per simulated second")
     axes.legend()
     save(figure, folder / "nodes.svg")
 
