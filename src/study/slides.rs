@@ -50,7 +50,7 @@ pub struct Point {
 pub struct Observed {
     /// Metrics of the settled part.
     pub metrics: StickSlip,
-    /// Rate at which a vibration dies \[1/s\], see [`death_rate`].
+    /// Rate \[1/s\] at which a vibration dies, from the swing at which sticking ends to a tenth of it.
     pub death_rate: f64,
 }
 
