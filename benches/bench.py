@@ -112,8 +112,9 @@ class Bench:
                 self.note(f"l = {length}, steps of {step} us at most: error {error:.3f} % (limit {LIMIT})")
                 if error <= LIMIT:
                     found.append((statistics.median(run["seconds"]), settings))
-            self.chosen[length] = min(found)[1]
-            self.note(f"l = {length}: {self.chosen[length][0]} is the cheapest that is accurate enough")
+            # None is: the default, whose speed then does not count.
+            self.chosen[length] = min(found, default=(0.0, ()))[1]
+            self.note(f"l = {length}: cheapest that is accurate enough: {' '.join(self.chosen[length]) or 'none'}")
         return self.chosen[length]
 
     def our_rate(self, length: int) -> float:

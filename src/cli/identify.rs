@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::output::{self, Done, Stop};
+use super::study::progress;
 use crate::error::Fault;
 use crate::params::{load, Params};
 use crate::study::identify::objective::Fineness;
@@ -104,11 +105,17 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
 
 /// Every effect on what the fit leaves.
 fn explain(task: &Task, fit: &Params) -> Vec<Explained> {
-    let fineness = if task.coarse { Fineness::COARSE } else { Fineness::FINE };
     let (unknowns, columns) = (&task.unknowns, &task.columns);
+    let fineness = Fineness::choose(task.coarse);
     let question = Question { fit, unknowns, columns, fineness, rounds: task.rounds };
-    question
-        .ask(&Reductions::default(), |name, done, of| eprintln!("effect {done:2} of {of}: {name}"))
+    let bar = progress();
+    let answers = question.ask(&Reductions::default(), |name, done, of| {
+        bar.set_length(of as u64);
+        bar.set_position(done as u64);
+        bar.set_message(name.to_string());
+    });
+    bar.finish_and_clear();
+    answers
 }
 
 /// Keeps the best so far, so that an interrupted search loses nothing; the final set is written

@@ -48,7 +48,7 @@ pub struct Arguments {
 /// Runs it.
 pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
     let params = compound(arguments.compound.as_deref())?;
-    let fineness = if arguments.coarse { Fineness::COARSE } else { Fineness::FINE };
+    let fineness = Fineness::choose(arguments.coarse);
     let measured = Measurements::new(arguments.friction.as_deref(), arguments.wear.as_deref())?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.unwrap_or(0))
@@ -74,8 +74,8 @@ pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
     Ok(Done::Fine)
 }
 
-/// A bar over the studies on terminals, with the one that runs and the time so far.
-fn progress() -> ProgressBar {
+/// A bar on terminals over studies, or effects, with the one that runs and the time so far.
+pub(super) fn progress() -> ProgressBar {
     let bar = ProgressBar::new(1);
     if let Ok(style) = ProgressStyle::with_template("{msg:8} {bar:24} {pos}/{len} {elapsed}") {
         bar.set_style(style);

@@ -149,10 +149,7 @@ impl TableOne {
     fn verdicts(&self) -> Vec<Verdict> {
         let per_cent = |x: f64| format!("{:.1} %", 100.0 * x);
         let wrong = self.disagreements();
-        let names: Vec<String> = wrong
-            .iter()
-            .map(|c| format!("{} at {:.0} mm/s", c.column.name, 1e3 * SPEEDS[c.row]))
-            .collect();
+        let names: Vec<String> = wrong.iter().map(|c| c.place()).collect();
         let columns = |check: &dyn Fn(&[&Compared]) -> bool| {
             TABLE_1.iter().all(|column| {
                 let cells: Vec<&Compared> =

@@ -116,9 +116,14 @@ impl Local {
         self.residuals.iter().map(|r| r * r).sum::<f64>() / free as f64
     }
 
+    /// JᵀJ: what a step costs in squared residuals.
+    pub(super) fn normal(&self) -> DMatrix<f64> {
+        self.jacobian.transpose() * &self.jacobian
+    }
+
     /// Directions of JᵀJ, the best determined first.
     pub fn directions(&self) -> Vec<Direction> {
-        let eigen = SymmetricEigen::new(self.jacobian.transpose() * &self.jacobian);
+        let eigen = SymmetricEigen::new(self.normal());
         let variance = self.variance();
         let mut order: Vec<usize> = (0..self.x.len()).collect();
         order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
@@ -135,7 +140,7 @@ impl Local {
     /// distribution over its range, which is what is known without data.
     pub fn deviations(&self) -> Vec<f64> {
         let prior = 12.0;
-        let mut information = self.jacobian.transpose() * &self.jacobian / self.variance();
+        let mut information = self.normal() / self.variance();
         for i in 0..self.x.len() {
             information[(i, i)] += prior;
         }

@@ -75,7 +75,7 @@ impl Hops {
                 *x += SHARE * (a - b);
             }
         } else {
-            let eigen = SymmetricEigen::new(from.jacobian.transpose() * &from.jacobian);
+            let eigen = SymmetricEigen::new(from.normal());
             for (value, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter())
             {
                 let normal: f64 = StandardNormal.sample(&mut self.rng);

@@ -33,6 +33,15 @@ impl Fineness {
     pub const FINE: Self =
         Self { along: [6, 18], up: 5, max_step: 1e-5, tolerance: 1e-3, bound: 20e3, step: 2e-5 };
 
+    /// [`Self::COARSE`] or [`Self::FINE`].
+    pub const fn choose(coarse: bool) -> Self {
+        if coarse {
+            Self::COARSE
+        } else {
+            Self::FINE
+        }
+    }
+
     /// Sets the solver of `params` for its geometry.
     pub fn apply(&self, params: &mut Params) {
         let long = params.block.length > 0.030;
@@ -72,6 +81,11 @@ impl Compared {
             Cell::Hz(paper) if self.hz() > 0.0 => Some(self.hz() / paper - 1.0),
             _ => None,
         }
+    }
+
+    /// Where the cell is, as people say it.
+    pub fn place(&self) -> String {
+        format!("{} at {:.0} mm/s", self.column.name, 1e3 * SPEEDS[self.row])
     }
 
     /// Does the model oscillate where the paper does and keep silent where it does?

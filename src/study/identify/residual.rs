@@ -4,17 +4,19 @@
 use std::fmt::Write;
 
 use super::gauss_newton::improve;
-use super::objective::{Compared, Fineness, Problem};
-use super::space::{places, Unknown};
+use super::objective::{Fineness, Problem};
+use super::space::{get, places, Unknown};
 use crate::effects::{fit_specs, FitParam, FitSpec, Spread};
 use crate::params::Params;
-use crate::study::paper::{Column, SPEEDS};
+use crate::study::paper::Column;
 use crate::study::slides::Reductions;
+use crate::study::table_one::TableOne;
 
 /// An effect begins at this share of its usual severity, and once more at the whole of it.
 const BEGINNINGS: [f64; 2] = [0.1, 1.0];
 /// Standard deviations of its prior that a parameter may go either way.
 const REACH: f64 = 2.0;
+
 /// What is asked of the residual.
 pub struct Question<'a> {
     /// The fit, no effect on.
@@ -36,14 +38,10 @@ pub struct Explained {
     pub name: String,
     /// Cost left.
     pub cost: f64,
-    /// Median and largest relative error of the frequencies.
-    pub errors: [f64; 2],
-    /// Cells that are silent where the paper's are loud, or loud where they are silent.
-    pub wrong: Vec<String>,
+    /// Table 1 as it then is.
+    pub table: TableOne,
     /// Parameters of the effect: name and value, SI.
     pub values: Vec<(&'static str, f64)>,
-    /// Parameters of the whole.
-    pub params: Params,
 }
 
 impl Question<'_> {
@@ -66,8 +64,7 @@ impl Question<'_> {
 
     /// The better end of the searches from all beginnings.
     fn best(&self, spec: Option<&FitSpec>, reductions: &Reductions) -> Explained {
-        let ends = BEGINNINGS.map(|share| self.search(spec, share, reductions));
-        let [a, b] = ends;
+        let [a, b] = BEGINNINGS.map(|share| self.search(spec, share, reductions));
         if b.cost < a.cost {
             b
         } else {
@@ -100,15 +97,12 @@ impl Question<'_> {
         }
         let local = improve(&problem, start, self.rounds, |_, _| {});
         let params = problem.params(&local.x);
-        let cells = problem.compare(&local.x);
         let added = form.map_or(&[][..], |(_, f)| f.params);
         Explained {
             name,
             cost: Problem::cost(&local.residuals, &local.x),
-            errors: errors(&cells),
-            wrong: cells.iter().filter(|c| !c.agrees()).map(cell).collect(),
-            values: added.iter().map(|p| (p.name, super::space::get(&params, p.name))).collect(),
-            params,
+            table: TableOne { cells: problem.compare(&local.x) },
+            values: added.iter().map(|p| (p.name, get(&params, p.name))).collect(),
         }
     }
 }
@@ -130,17 +124,6 @@ fn unknown(p: &FitParam, severity: bool) -> Unknown {
     }
 }
 
-fn cell(c: &Compared) -> String {
-    format!("{} at {:.0} mm/s", c.column.name, 1e3 * SPEEDS[c.row])
-}
-
-/// Median and largest magnitude of the relative errors.
-fn errors(cells: &[Compared]) -> [f64; 2] {
-    let mut all: Vec<f64> = cells.iter().filter_map(|c| c.error().map(f64::abs)).collect();
-    all.sort_by(f64::total_cmp);
-    [all.get(all.len() / 2), all.last()].map(|e| e.copied().unwrap_or(0.0))
-}
-
 /// The answers as a Markdown table, the best first.
 pub fn markdown(answers: &[Explained]) -> String {
     let mut out = String::from("# What an effect would explain of the residual of Table 1\n\n");
@@ -151,8 +134,9 @@ pub fn markdown(answers: &[Explained]) -> String {
     for e in sorted {
         let values: Vec<String> =
             e.values.iter().map(|(name, value)| format!("`{name}` {value:.3e}")).collect();
-        let wrong = if e.wrong.is_empty() { "none".to_string() } else { e.wrong.join(", ") };
-        let [median, largest] = e.errors.map(|x| 100.0 * x);
+        let wrong: Vec<String> = e.table.disagreements().iter().map(|c| c.place()).collect();
+        let wrong = if wrong.is_empty() { "none".to_string() } else { wrong.join(", ") };
+        let [median, largest] = [e.table.median_error(), e.table.max_error()].map(|x| 100.0 * x);
         let _ = writeln!(
             out,
             "| {} | {:.3} | {median:.1} % | {largest:.1} % | {wrong} | {} |",

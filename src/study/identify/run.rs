@@ -82,15 +82,14 @@ pub fn identify(
         reductions,
     };
     let mut x = places(&task.unknowns, &base);
+    let searched = problem(Fineness::choose(!task.fine));
     if task.evaluations > 0 {
-        let fineness = if task.fine { Fineness::FINE } else { Fineness::COARSE };
-        x = global(task, &problem(fineness), x, &mut told);
+        x = global(task, &searched, x, &mut told);
     }
     if task.hops > 0 {
-        let fineness = if task.fine { Fineness::FINE } else { Fineness::COARSE };
-        x = hop(task, &problem(fineness), x, &mut told);
+        x = hop(task, &searched, x, &mut told);
     }
-    let fine = problem(if task.coarse { Fineness::COARSE } else { Fineness::FINE });
+    let fine = problem(Fineness::choose(task.coarse));
     let local = improve(&fine, x, task.rounds, |x, cost| {
         let best = &fine.params(x);
         told(&Progress { stage: "local", evaluations: task.evaluations, cost, best });
