@@ -4,11 +4,11 @@ use super::identify::objective::Fineness;
 use super::plot::{svg, Panel, Series};
 use super::report::{csv, Study, Verdict};
 use super::slides::Reductions;
-use super::variation::{base, run_all, Run, Traces, DURATION};
+use super::variation::{base, run_all, Run, Traces, DURATION, START};
 use crate::block::TreadBlock;
 use crate::error::Fault;
 use crate::params::Params;
-use crate::scenario::{self, Inputs, Plan, Scenario, Slide};
+use crate::scenario::{self, Inputs, Plan};
 
 /// Figure 4.
 ///
@@ -84,14 +84,14 @@ type Cycle = Vec<[f64; 2]>;
 fn edge_cycles(run: &Run) -> Result<(Vec<(f64, Cycle)>, Vec<f64>), Fault> {
     const FINE_STEP: f64 = 5e-6;
     let load = run.pressure * run.params.block.length * run.params.block.width;
-    let scenario = Scenario::Slide(Slide::constant(run.speed, load));
+    let scenario = START.slide(run.speed, load);
     let mut block =
         TreadBlock::with_reduction(&run.params, Reductions::default().of(&run.params)?)?;
     let nodes = run_in_nodes(&block);
     let mut motion: Vec<Vec<f64>> = vec![Vec::new(); nodes.len()];
-    let plan = Plan { step: FINE_STEP, duration: DURATION, inputs: Inputs::Exact };
+    let plan = Plan { step: FINE_STEP, duration: START.lead() + DURATION, inputs: Inputs::Exact };
     scenario::run(&mut block, &scenario, &plan, |time, block| {
-        if time > DURATION - 2e-3 {
+        if time > plan.duration - 2e-3 {
             let field = block.field();
             for (trace, (node, _)) in motion.iter_mut().zip(&nodes) {
                 trace.push(field[*node][0]);

@@ -11,6 +11,7 @@ pub mod plot;
 pub mod report;
 pub mod rolling;
 pub mod slides;
+pub mod start;
 pub mod table_one;
 pub mod variation;
 pub mod vibration;

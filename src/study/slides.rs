@@ -2,12 +2,13 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
+use super::start::Start;
 use crate::block::{Outputs, Shape, TreadBlock, STATIONS};
 use crate::error::Fault;
 use crate::metrics::{self, stick_slip, Recorder, StickSlip};
 use crate::params::Params;
 use crate::reduction::Reduction;
-use crate::scenario::{self, Inputs, Plan, Scenario, Slide};
+use crate::scenario::{self, Inputs, Plan};
 
 /// Reductions made so far, one per [`Shape`].
 #[derive(Debug, Default)]
@@ -39,7 +40,9 @@ pub struct Point {
     pub speed: f64,
     /// Mean pressure \[Pa\].
     pub pressure: f64,
-    /// Length of the run \[s\].
+    /// How it comes to that speed.
+    pub start: Start,
+    /// Length of the run at that speed \[s\].
     pub duration: f64,
     /// Distance of the rows \[s\].
     pub step: f64,
@@ -50,16 +53,21 @@ pub struct Point {
 pub struct Observed {
     /// Metrics of the settled part.
     pub metrics: StickSlip,
-    /// Rate \[1/s\] at which a vibration dies, from the swing at which sticking ends to a tenth of it.
-    pub death_rate: f64,
+    /// Rate \[1/s\] at which a vibration grows, or dies where it is negative, between the swing at which
+    /// sticking begins and a tenth of it.
+    pub growth: f64,
 }
 
+/// Share of the road's speed by which the velocity swings when a block begins to stick.
+const STICKS: f64 = 0.8;
 /// Silence is certain, and the run over, when the velocity swings by less than this share of the
 /// road speed over [`WINDOW`].
-const DEAD: f64 = 2e-3;
+const DEAD: f64 = 2e-4;
 /// Time over which amplitudes are taken \[s\]; one period of the slowest stick-slip of the paper.
 const WINDOW: f64 = 2e-3;
-/// Time over which amplitudes are taken while a vibration dies \[s\]; one period of 2 kHz, below which blocks
+/// Windows after which a run may be over: a vibration that grows slowly must have the time to.
+const PATIENCE: f64 = 5.0;
+/// Time over which amplitudes are taken while a vibration grows or dies \[s\]; one period of 2 kHz, below which blocks
 /// of the paper stick.
 const SHORT_WINDOW: f64 = 0.5e-3;
 
@@ -69,18 +77,21 @@ const SHORT_WINDOW: f64 = 0.5e-3;
 /// What stops the block.
 pub fn observe(params: &Params, reductions: &Reductions, point: Point) -> Result<Observed, Fault> {
     let load = point.pressure * params.block.length * params.block.width;
-    let scenario = Scenario::Slide(Slide::constant(point.speed, load));
+    let (scenario, lead) = (point.start.slide(point.speed, load), point.start.lead());
     let mut block = TreadBlock::with_reduction(params, reductions.of(params)?)?;
     let mut recorder = Recorder::default();
     let mut swings = Swings::new(WINDOW, point.step);
     let mut short = Swings::new(SHORT_WINDOW, point.step);
-    let plan = Plan { step: point.step, duration: point.duration, inputs: Inputs::Exact };
+    let plan = Plan { step: point.step, duration: lead + point.duration, inputs: Inputs::Exact };
     let outcome = scenario::run(&mut block, &scenario, &plan, |time, block| {
+        if time < lead {
+            return Ok(());
+        }
         let outputs = block.outputs();
-        recorder.push(time, outputs);
+        recorder.push(time - lead, outputs);
         swings.push(outputs.run_in_velocity[0]);
         short.push(outputs.run_in_velocity[0]);
-        if time > 2.0 * WINDOW && swings.last() < DEAD * point.speed.abs() {
+        if time > lead + PATIENCE * WINDOW && swings.last() < DEAD * point.speed.abs() {
             return Err(died());
         }
         Ok(())
@@ -93,7 +104,7 @@ pub fn observe(params: &Params, reductions: &Reductions, point: Point) -> Result
     if outcome.is_err() {
         metrics.frequency = 0.0;
     }
-    Ok(Observed { metrics, death_rate: death_rate(&short.swings, point.speed.abs()) })
+    Ok(Observed { metrics, growth: growth(&short.swings, point.speed.abs()) })
 }
 
 /// Share of the touching stations that slide slower than `bound` \[m/s\]: quasi-sticking creeps, so the
@@ -109,17 +120,24 @@ fn died() -> Fault {
     Fault::File { path: String::new(), reason: "vibration died".to_string() }
 }
 
-/// Rate \[1/s\] at which the swings (one per [`SHORT_WINDOW`]) fall from the road's speed, below which nothing
-/// sticks any more, to a tenth of it: what is left then is the carriage, which settles in its own time
-/// whatever friction does. 0 if they do not fall.
-fn death_rate(swings: &[f64], road_speed: f64) -> f64 {
-    let Some(from) = swings.iter().rposition(|s| *s >= 0.8 * road_speed) else { return 0.0 };
-    let fallen = swings.iter().skip(from).position(|s| *s <= 0.1 * road_speed);
-    let windows = fallen.unwrap_or(swings.len() - 1 - from);
-    if windows == 0 {
+/// Rate \[1/s\] at which the swings (one per [`SHORT_WINDOW`]) grow from a tenth of the road's speed to
+/// [`STICKS`] of it, or, negative, fall from there to a tenth: what is left then is the carriage, which settles in
+/// its own time whatever friction does.
+fn growth(swings: &[f64], road_speed: f64) -> f64 {
+    let large = |s: &f64| *s >= STICKS * road_speed;
+    let small = |s: &f64| *s <= 0.1 * road_speed;
+    let (from, to) = if swings.last().is_some_and(large) {
+        let to = swings.iter().position(large).unwrap_or(0);
+        (swings[..to].iter().rposition(small).unwrap_or(0), to)
+    } else {
+        let from = swings.iter().rposition(large).unwrap_or(0);
+        let fallen = swings.iter().skip(from).position(small);
+        (from, fallen.map_or(swings.len().saturating_sub(1), |windows| from + windows))
+    };
+    if from == to {
         return 0.0;
     }
-    (swings[from] / swings[from + windows]).ln() / (windows as f64 * SHORT_WINDOW)
+    (swings[to] / swings[from]).ln() / ((to - from) as f64 * SHORT_WINDOW)
 }
 
 /// Peak-to-peak velocity window by window.
@@ -153,12 +171,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_rate_of_a_dying_vibration_is_found_above_what_the_carriage_leaves() {
-        // exp(-4000 t) for 10 ms over a slow rest.
-        let swing = |k: usize| 2.0 * (-4000.0 * SHORT_WINDOW * k as f64).exp() + 0.001;
-        let swings: Vec<f64> = (0..20).map(swing).collect();
-        let rate = death_rate(&swings, 0.3);
-        assert!((rate / 4000.0 - 1.0).abs() < 0.1, "{rate}");
-        assert_eq!(death_rate(&[0.7; 9], 0.3), 0.0);
+    fn the_rate_of_a_vibration_is_found_above_what_the_carriage_leaves() {
+        // exp(-4000 t) for 10 ms over a slow rest, and the same backwards up to a limit cycle.
+        let swing = |k: usize| (2.0 * (-4000.0 * SHORT_WINDOW * k as f64).exp() + 0.001).min(0.7);
+        let dying: Vec<f64> = (0..20).map(swing).collect();
+        let growing: Vec<f64> = dying.iter().rev().copied().collect();
+        for (swings, rate) in [(dying, -4000.0), (growing, 4000.0)] {
+            let found = growth(&swings, 0.3);
+            assert!((found / rate - 1.0).abs() < 0.1, "{found}");
+        }
+        assert_eq!(growth(&[0.7; 9], 0.3), 0.0);
     }
 }

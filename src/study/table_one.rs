@@ -2,11 +2,12 @@
 
 use std::fmt::Write;
 
-use super::identify::objective::{compare, Compared, Fineness, LENGTHEN};
+use super::identify::objective::{compare, Compared, Fineness};
 use super::paper::{Cell, Column, SPEEDS, TABLE_1};
 use super::plot::{svg, Panel, Series};
 use super::report::{Study, Verdict};
 use super::slides::Reductions;
+use super::start::Start;
 use crate::error::Fault;
 use crate::params::Params;
 
@@ -19,8 +20,14 @@ pub struct TableOne {
 
 impl TableOne {
     /// Simulates the columns with the parameters of `base`; only geometry and solver are changed.
-    pub fn simulate(base: &Params, columns: &[Column], fineness: &Fineness) -> Self {
-        let mut cells = compare(base, columns, fineness, LENGTHEN, &Reductions::default());
+    pub fn simulate(
+        base: &Params,
+        columns: &[Column],
+        fineness: &Fineness,
+        start: Start,
+        reductions: &Reductions,
+    ) -> Self {
+        let mut cells = compare(base, columns, fineness, start, reductions);
         let place = |c: &Compared| TABLE_1.iter().position(|t| t.name == c.column.name);
         cells.sort_by_key(|c| (place(c), c.row));
         Self { cells }
@@ -116,12 +123,32 @@ impl TableOne {
     }
 }
 
+impl TableOne {
+    /// What a block that starts from rest does otherwise, as a sentence.
+    fn changes(&self, braked: &Self) -> String {
+        let other: Vec<String> = self
+            .cells
+            .iter()
+            .zip(&braked.cells)
+            .filter(|(rest, braked)| (rest.hz() > 0.0) != (braked.hz() > 0.0))
+            .map(|(rest, _)| format!("{} ({:.0} Hz)", rest.place(), rest.hz()))
+            .collect();
+        let cells = if other.is_empty() { "the same cells".to_string() } else { other.join(", ") };
+        format!(
+            "The road is braked from 1 m/s to its speed; a block that starts from rest begins on the limit \
+             cycle wherever there is one, and vibrates in addition at: {cells}.\n"
+        )
+    }
+}
+
 /// The study.
 ///
 /// # Errors
 /// What the drawing library says.
 pub fn table_1(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
-    let table = TableOne::simulate(compound, &TABLE_1, fineness);
+    let reductions = Reductions::default();
+    let [table, from_rest] = [Start::Braking, Start::Rest]
+        .map(|start| TableOne::simulate(compound, &TABLE_1, fineness, start, &reductions));
     let mut series = Vec::new();
     for (color, column) in TABLE_1.iter().enumerate() {
         let cells = || table.cells.iter().filter(|c| c.column.name == column.name);
@@ -138,8 +165,11 @@ pub fn table_1(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     Ok(Study {
         name: "table-1",
         title: "Stick-slip frequencies over geometry and speed",
-        notes: table.text(),
-        tables: vec![("table-1.csv".to_string(), table.csv())],
+        notes: format!("{}{}", table.text(), from_rest.changes(&table)),
+        tables: vec![
+            ("table-1.csv".to_string(), table.csv()),
+            ("table-1-from-rest.csv".to_string(), from_rest.csv()),
+        ],
         pictures: vec![("table-1.svg".to_string(), picture)],
         verdicts: table.verdicts(),
     })

@@ -7,18 +7,21 @@ use super::paper::PRESSURE;
 use super::plot::{Panel, Series};
 use super::report::csv;
 use super::slides::{sticking, Reductions};
+use super::start::Start;
 use crate::block::TreadBlock;
 use crate::error::Fault;
 use crate::metrics::{stick_slip, Recorder, StickSlip};
 use crate::params::Params;
-use crate::scenario::{self, Inputs, Plan, Scenario, Slide};
+use crate::scenario::{self, Inputs, Plan};
 
 /// Height and length \[m\] of the base case: the only column of Table 1 with 2550 Hz at 300 mm/s.
 pub const BASE: (f64, f64) = (0.010, 0.045);
 /// Speed of the base case \[m/s\].
 pub const SPEED: f64 = 0.300;
-/// Length of the runs \[s\].
+/// Length of the runs at their speed \[s\].
 pub const DURATION: f64 = 20e-3;
+/// How they come to it.
+pub const START: Start = Start::Braking;
 /// Distance of rows \[s\].
 const STEP: f64 = 2e-5;
 
@@ -73,11 +76,15 @@ pub fn run_all(runs: Vec<Run>) -> Result<Vec<Ran>, Fault> {
 
 fn simulate(run: Run, reductions: &Reductions) -> Result<Ran, Fault> {
     let load = run.pressure * run.params.block.length * run.params.block.width;
-    let scenario = Scenario::Slide(Slide::constant(run.speed, load));
+    let scenario = START.slide(run.speed, load);
     let mut block = TreadBlock::with_reduction(&run.params, reductions.of(&run.params)?)?;
     let (mut traces, mut recorder) = (Traces::default(), Recorder::default());
-    let plan = Plan { step: STEP, duration: DURATION, inputs: Inputs::Exact };
+    let plan = Plan { step: STEP, duration: START.lead() + DURATION, inputs: Inputs::Exact };
     scenario::run(&mut block, &scenario, &plan, |time, block| {
+        let time = time - START.lead();
+        if time < 0.0 {
+            return Ok(());
+        }
         let o = block.outputs();
         recorder.push(time, o);
         traces.time.push(time);

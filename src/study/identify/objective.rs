@@ -7,6 +7,7 @@ use crate::error::Fault;
 use crate::params::Params;
 use crate::study::paper::{Cell, Column, PRESSURE, SPEEDS};
 use crate::study::slides::{observe, Observed, Point, Reductions};
+use crate::study::start::Start;
 
 /// How finely the runs of an identification are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -97,25 +98,25 @@ impl Compared {
     /// small step and then what grows with how clearly it is, so that a search feels which way is out.
     pub fn residual(&self) -> f64 {
         let Some(observed) = &self.observed else { return 1.0 };
-        let (hz, swing) = (self.hz(), observed.metrics.velocity_amplitude);
-        let share = (observed.death_rate / RATE_OF_SLOPE).min(0.25);
+        let hz = self.hz();
+        let wrong = WRONG + STEEPNESS * (observed.growth.abs() / RATE_OF_SLOPE).min(0.25);
         match self.cell() {
             Cell::Hz(paper) if hz > 0.0 => snap_ratio(hz, paper).clamp(-1.0, 1.0),
-            Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => WRONG + 2.0 * share,
+            Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => wrong,
             Cell::Between(low, high) => (hz / low).ln().min(0.0) + (hz / high).ln().max(0.0),
             _ if hz <= 0.0 => 0.0,
-            _ => WRONG + 0.3 * (swing / SPEEDS[self.row] - STICKS).clamp(0.0, 4.0),
+            _ => wrong,
         }
     }
 }
 
 /// Residual of a cell that is only just silent or loud against the paper.
 const WRONG: f64 = 0.12;
-/// Rate at which a vibration dies \[1/s\] over the share of the slope of friction that it wants: half of βω², at
-/// β = 1e-4 s and 5 kHz.
+/// Rate at which a vibration grows or dies \[1/s\] over the share of the slope of friction that is too much or
+/// too little: half of βω², at β = 1e-4 s and 5 kHz.
 const RATE_OF_SLOPE: f64 = 5e4;
-/// Swing of the velocity over the road's speed at which a vibration begins to stick.
-const STICKS: f64 = 1.8;
+/// Residual over that share.
+const STEEPNESS: f64 = 4.0;
 
 /// Logarithm of the frequency ratio. Where every second or third snap differs a little, the period
 /// counts that many snaps: then the rate of snaps is compared, at a small price.
@@ -131,25 +132,21 @@ fn snap_ratio(hz: f64, paper: f64) -> f64 {
     }
 }
 
-/// Length of the runs of Table 1 over the shortest that shows a frequency: a vibration that dies slowly
-/// must have the time to.
-pub const LENGTHEN: f64 = 1.5;
-
-/// Duration of the run of a cell \[s\]: the start settles, then eight periods or more are seen.
+/// Duration of the run of a cell \[s\]: a vibration grows or dies, then eight periods or more are seen.
 fn duration(cell: Cell) -> f64 {
     match cell {
-        Cell::Hz(hz) => (5e-3 + 9.0 / hz).max(10e-3),
-        Cell::Between(..) => 15e-3,
-        Cell::Silent => 20e-3,
+        Cell::Hz(hz) => (17.5e-3 + 13.5 / hz).max(25e-3),
+        Cell::Between(..) => 32.5e-3,
+        Cell::Silent => 40e-3,
     }
 }
 
-/// Runs all cells of `columns`.
+/// Runs all cells of `columns`, each started like the others.
 pub fn compare(
     base: &Params,
     columns: &[Column],
     fineness: &Fineness,
-    lengthen: f64,
+    start: Start,
     reductions: &Reductions,
 ) -> Vec<Compared> {
     let mut cells: Vec<(Column, usize)> =
@@ -166,7 +163,8 @@ pub fn compare(
             let point = Point {
                 speed: SPEEDS[row],
                 pressure: PRESSURE,
-                duration: lengthen * duration(column.cells[row]),
+                start,
+                duration: duration(column.cells[row]),
                 step: fineness.step,
             };
             Compared { column, row, observed: observe(&params, reductions, point).ok() }
@@ -229,7 +227,7 @@ impl Problem<'_> {
 
     /// All cells at `x`.
     pub fn compare(&self, x: &[f64]) -> Vec<Compared> {
-        compare(&self.params(x), self.columns, &self.fineness, LENGTHEN, self.reductions)
+        compare(&self.params(x), self.columns, &self.fineness, Start::Braking, self.reductions)
     }
 
     /// Cost of residuals: half their squares in units of 5 %, but from [`OUTLIER`] on (pseudo-Huber)
