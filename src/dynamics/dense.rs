@@ -68,50 +68,105 @@ pub fn invert_rows(matrix: &mut [f64], size: usize) -> bool {
     }
 }
 
-/// [`invert_rows`] for rows of `N` packs.
+/// [`invert_rows`] for rows of `N` packs: two pivots at a time, because going through the matrix costs more
+/// than what is done to a row.
 #[inline(always)]
 fn gauss_jordan<const N: usize>(packs: &mut [[f64; LANES]], size: usize) -> bool {
     let rows = &mut packs.as_chunks_mut::<N>().0[..size];
-    let (zero, one) = (Pack::splat(0.0), Pack::splat(1.0));
-    for k in 0..size {
-        let (pack, lane) = (k / LANES, k % LANES);
-        let pivot = rows[k][pack][lane];
-        if pivot.is_nan() || pivot <= 0.0 {
+    // No iterator over the pairs: a closure is not compiled for the instruction set of its caller.
+    for pair in 0..size / 2 {
+        if !two_pivots(rows, 2 * pair) {
             return false;
         }
-        // Masks instead of single numbers written: a row that was written in parts cannot be read
-        // as a whole until all parts have reached the cache.
-        let (mut keep, mut unit) = ([one; N], [zero; N]);
-        for n in 0..N {
-            if n == pack {
-                (keep[n], unit[n]) = (KEEP[lane], one - KEEP[lane]);
-            }
-        }
-        let inverse = Pack::splat(1.0 / pivot);
-        let mut pivot_row = [zero; N];
-        for n in 0..N {
-            pivot_row[n] = keep[n].mul_add(Pack(rows[k][n]), unit[n]) * inverse;
-        }
-        for row in rows.iter_mut() {
-            let negative = Pack::splat(-row[pack][lane]);
-            for n in 0..N {
-                row[n] = negative.mul_add(pivot_row[n], keep[n] * Pack(row[n])).0;
-            }
-        }
-        rows[k] = pivot_row.map(|part| part.0);
     }
+    size.is_multiple_of(2) || last_pivot(rows)
+}
+
+/// Eliminates columns `k` and `k` + 1; both lie in the same pack, since `k` is even.
+#[inline(always)]
+fn two_pivots<const N: usize>(rows: &mut [[[f64; LANES]; N]], k: usize) -> bool {
+    let (pack, lane) = (k / LANES, k % LANES);
+    let [a, b] = [rows[k][pack][lane], rows[k][pack][lane + 1]];
+    let [c, d] = [rows[k + 1][pack][lane], rows[k + 1][pack][lane + 1]];
+    let inverse_a = 1.0 / a;
+    let schur = d - c * inverse_a * b;
+    if !(a > 0.0 && schur > 0.0) {
+        return false;
+    }
+    // The inverse of the block of pivots.
+    let q = 1.0 / schur;
+    let (upper, lower) = (-b * inverse_a * q, -c * inverse_a * q);
+    let corner = inverse_a - upper * c * inverse_a;
+    let [first, second] = [UNIT[lane], UNIT[lane + 1]];
+    let keep = masks::<N>(pack, Pack::splat(1.0) - first - second);
+    let (mut row_a, mut row_b) = ([Pack::splat(0.0); N], [Pack::splat(0.0); N]);
+    for n in 0..N {
+        let (mut x, mut y) = (keep[n] * Pack(rows[k][n]), keep[n] * Pack(rows[k + 1][n]));
+        if n == pack {
+            (x, y) = (x + first, y + second);
+        }
+        row_a[n] = Pack::splat(corner).mul_add(x, Pack::splat(upper) * y);
+        row_b[n] = Pack::splat(lower).mul_add(x, Pack::splat(q) * y);
+    }
+    for row in rows.iter_mut() {
+        let [x, y] = [-row[pack][lane], -row[pack][lane + 1]].map(Pack::splat);
+        for n in 0..N {
+            row[n] = y.mul_add(row_b[n], x.mul_add(row_a[n], keep[n] * Pack(row[n]))).0;
+        }
+    }
+    rows[k] = row_a.map(|part| part.0);
+    rows[k + 1] = row_b.map(|part| part.0);
     true
 }
 
-/// Ones but for a zero in each lane.
-const KEEP: [Pack; LANES] = {
-    let mut keep = [Pack([1.0; LANES]); LANES];
+/// Eliminates the last column.
+#[inline(always)]
+fn last_pivot<const N: usize>(rows: &mut [[[f64; LANES]; N]]) -> bool {
+    let k = rows.len() - 1;
+    let (pack, lane) = (k / LANES, k % LANES);
+    let pivot = rows[k][pack][lane];
+    if pivot.is_nan() || pivot <= 0.0 {
+        return false;
+    }
+    let keep = masks::<N>(pack, Pack::splat(1.0) - UNIT[lane]);
+    let inverse = Pack::splat(1.0 / pivot);
+    let mut pivot_row = [inverse; N];
+    for n in 0..N {
+        let kept = keep[n] * Pack(rows[k][n]);
+        pivot_row[n] = if n == pack { kept + UNIT[lane] } else { kept } * inverse;
+    }
+    for row in rows.iter_mut() {
+        let negative = Pack::splat(-row[pack][lane]);
+        for n in 0..N {
+            row[n] = negative.mul_add(pivot_row[n], keep[n] * Pack(row[n])).0;
+        }
+    }
+    rows[k] = pivot_row.map(|part| part.0);
+    true
+}
+
+/// `mask` in one pack of a row, ones in all others. Masks instead of single numbers written: a row that was
+/// written in parts cannot be read as a whole until all parts have reached the cache.
+#[inline(always)]
+fn masks<const N: usize>(pack: usize, mask: Pack) -> [Pack; N] {
+    let mut masks = [Pack::splat(1.0); N];
+    for (n, own) in masks.iter_mut().enumerate() {
+        if n == pack {
+            *own = mask;
+        }
+    }
+    masks
+}
+
+/// Zeros but for a one in each lane.
+const UNIT: [Pack; LANES] = {
+    let mut unit = [Pack([0.0; LANES]); LANES];
     let mut lane = 0;
     while lane < LANES {
-        keep[lane].0[lane] = 0.0;
+        unit[lane].0[lane] = 1.0;
         lane += 1;
     }
-    keep
+    unit
 };
 
 /// [`invert_rows`] for rows of any number of packs.

@@ -94,6 +94,17 @@ impl Compared {
         (self.hz() > 0.0) == (self.cell() != Cell::Silent)
     }
 
+    /// Where the block is silent and should not be: the rate at which the vibration of a start from rest dies. A block
+    /// that came to slide steadily from a higher speed has none that could.
+    fn tell_how_silent(&mut self, params: &Params, reductions: &Reductions, point: Point) {
+        if self.agrees() || self.hz() > 0.0 {
+            return;
+        }
+        let Some(observed) = &mut self.observed else { return };
+        let from_rest = observe(params, reductions, Point { start: Start::Rest, ..point });
+        observed.growth = from_rest.map_or(0.0, |rest| rest.growth.min(0.0));
+    }
+
     /// Residual: the logarithm of the frequency ratio; where the block is silent (or loud) and should not be, a
     /// small step and then what grows with how clearly it is, so that a search feels which way is out.
     pub fn residual(&self) -> f64 {
@@ -167,7 +178,10 @@ pub fn compare(
                 duration: duration(column.cells[row]),
                 step: fineness.step,
             };
-            Compared { column, row, observed: observe(&params, reductions, point).ok() }
+            let mut cell =
+                Compared { column, row, observed: observe(&params, reductions, point).ok() };
+            cell.tell_how_silent(&params, reductions, point);
+            cell
         })
         .collect()
 }
