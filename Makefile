@@ -1,6 +1,6 @@
 # What people type. Each recipe is a script under packaging/ or a cargo command; none is hidden here.
 .DEFAULT_GOAL := help
-.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs pictures clean chain leak-check fuzz sanitize
+.PHONY: help setup fmu demo test bench convergence release gap-check paper win64 docs pictures clean chain leak-check fuzz sanitize coverage
 
 PYTHON := .venv/bin/python
 CAMPAIGNS ?= ../shared/measurements/open
@@ -64,10 +64,13 @@ gap-check: ## Diagnose the labelled campaigns (CAMPAIGNS=folder) and score the a
 	@packaging/setup.sh build
 	@cargo run --quiet --release --bin tread -- gap check $(CAMPAIGNS)
 
-paper: ## The paper's studies on this model: out/paper/index.html, and their tests
+paper: ## The paper's studies on this model: out/paper/index.html
 	@packaging/setup.sh build
 	@cargo run --quiet --release --bin tread -- study all --out out/paper
-	@cargo test --quiet --release --test study -- --include-ignored
+
+coverage: ## Lines that the Rust tests reach, by module: out/coverage/summary.csv and html (TESTS="--lib --test gap": some)
+	@packaging/setup.sh build run test
+	@packaging/coverage.sh $(TESTS)
 
 docs: ## The book in docs/book (mdbook, warnings are errors) and the Rust documentation
 	@docs/build.sh
