@@ -3,6 +3,7 @@
 pub mod dense;
 pub mod energy;
 pub mod equilibrium;
+pub mod gauss_jordan;
 pub mod kinematics;
 pub mod linear;
 pub mod matrices;

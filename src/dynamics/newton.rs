@@ -1,11 +1,11 @@
 //! Newton directions for the contact velocities of a stage, in two forms: with the normal velocities
 //! eliminated for a block that is not turned, and with the full matrix for all else.
 
-use super::dense;
 use super::kinematics::Kinematics;
 use super::linear::Linear;
 use super::matrices::{FlatMatrices, StageMatrices};
 use super::stage::Stage;
+use super::{dense, gauss_jordan};
 use crate::contact::Traction;
 use crate::pack::Aligned;
 
@@ -110,7 +110,7 @@ impl Newton {
             to[i] += self.diagonal[i];
             self.slopes[i] = [self.diagonal[i], t.coupling[i], 0.0, m.normal_slope[i]];
         }
-        self.known = dense::invert_rows(&mut self.inverse, self.nodes);
+        self.known = gauss_jordan::invert_rows(&mut self.inverse, self.nodes);
         self.known
     }
 }
