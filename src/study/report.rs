@@ -114,15 +114,47 @@ pub fn html(studies: &[Study], compound: &str) -> String {
     out
 }
 
+/// A number with the four digits that people read; other text as it is. The CSV beside the page has all digits.
+fn readable(cell: &str) -> String {
+    match cell.parse::<f64>() {
+        Ok(x) if x == 0.0 || (1e-3..1e6).contains(&x.abs()) => {
+            let digits = if x == 0.0 { 0 } else { (3 - x.abs().log10().floor() as i32).max(0) };
+            let text = format!("{x:.*}", digits as usize);
+            if text.contains('.') {
+                text.trim_end_matches('0').trim_end_matches('.').to_string()
+            } else {
+                text
+            }
+        }
+        Ok(x) => format!("{x:.3e}"),
+        Err(_) => cell.to_string(),
+    }
+}
+
 /// A CSV as an HTML table.
 fn grid(csv: &str) -> String {
     let row = |line: &str, tag: &str| {
-        let cells: String =
-            line.split(',').map(|cell| format!("<{tag}>{}</{tag}>", escape(cell))).collect();
+        let cells: String = line
+            .split(',')
+            .map(|cell| format!("<{tag}>{}</{tag}>", escape(&readable(cell))))
+            .collect();
         format!("<tr>{cells}</tr>\n")
     };
     let mut lines = csv.lines();
     let head = lines.next().map_or_else(String::new, |line| row(line, "th"));
     let body: String = lines.map(|line| row(line, "td")).collect();
     format!("<table>{head}{body}</table>")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::readable;
+
+    #[test]
+    fn numbers_of_tables_have_four_digits() {
+        let told =
+            ["0.0005925", "0.0016079187", "2633.0227", "250000", "0", "0.05", "-1.25", "lost"];
+        let read = ["5.925e-4", "0.001608", "2633", "250000", "0", "0.05", "-1.25", "lost"];
+        assert_eq!(told.map(readable), read);
+    }
 }

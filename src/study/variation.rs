@@ -28,6 +28,10 @@ const STEP: f64 = 2e-5;
 /// A station sticks while it slides slower than this share of the road speed.
 pub const STUCK: f64 = 0.15;
 
+/// Displacement over the block's height from which on a run is beyond the theory, as where a soft block sticks for
+/// good and is dragged along; it is named and not drawn.
+const BEYOND: f64 = 0.1;
+
 /// A run of the block with its label.
 #[derive(Clone, Debug)]
 pub struct Run {
@@ -97,6 +101,11 @@ fn simulate(run: Run, reductions: &Reductions) -> Result<Ran, Fault> {
     Ok((run, traces, metrics))
 }
 
+/// Does the block leave small strain?
+fn beyond(run: &Run, traces: &Traces) -> bool {
+    traces.run_in.iter().any(|x| x[0].abs() > BEYOND * run.params.block.height)
+}
+
 /// One study of figures 5 to 7: runs that differ in one thing.
 pub struct Variation {
     /// Name of the study's files.
@@ -159,9 +168,26 @@ impl Variation {
         (format!("{}-traces.csv", self.name), csv(&header, rows.collect::<Vec<_>>()))
     }
 
+    /// The runs that leave small strain, as a sentence; nothing where none does.
+    pub fn beyond_small_strain(&self) -> String {
+        let labels: Vec<&str> =
+            self.runs.iter().filter(|r| beyond(&r.0, &r.1)).map(|r| r.0.label.as_str()).collect();
+        if labels.is_empty() {
+            return String::new();
+        }
+        format!(
+            "Not drawn, because the block sticks for good there and leaves small strain: {}. ",
+            labels.join(", ")
+        )
+    }
+
     /// Displacement over the last 3 ms.
     pub fn displacements(&self) -> Panel {
         let series = self.runs.iter().enumerate().map(|(i, (run, t, _))| {
+            if beyond(run, t) {
+                let label = format!("{}: beyond small strain", run.label);
+                return Series::line(label, i, Vec::new());
+            }
             let points = t
                 .time
                 .iter()

@@ -49,9 +49,11 @@ pub fn fig_5(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     Ok(Study {
         name: "fig-5",
         title: "Young's modulus and material damping",
-        notes: "The values of beta are lost in the paper; ours run from half to three times the \
-                identified one."
-            .to_string(),
+        notes: format!(
+            "{}The values of beta are lost in the paper; ours run from half to three times the identified \
+             one.",
+            modulus.beyond_small_strain()
+        ),
         tables: vec![modulus.summary(), damping.summary(), modulus.traces(), damping.traces()],
         pictures: vec![(
             "fig-5.svg".to_string(),
@@ -224,7 +226,7 @@ pub fn fig_7(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     Ok(Study {
         name: "fig-7",
         title: "Mean pressure and block geometry",
-        notes: String::new(),
+        notes: pressure.beyond_small_strain(),
         tables: vec![pressure.summary(), geometry.summary(), pressure.traces()],
         pictures: vec![(
             "fig-7.svg".to_string(),
