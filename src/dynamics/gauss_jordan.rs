@@ -35,9 +35,11 @@ fn gauss_jordan<const N: usize>(packs: &mut [[f64; LANES]], size: usize) -> bool
 #[inline(always)]
 fn two_pivots<const N: usize>(rows: &mut [[[f64; LANES]; N]], k: usize) -> bool {
     let (pack, lane) = (k / LANES, k % LANES);
-    let block = [rows[k], rows[k + 1]].map(|row| [row[pack][lane], row[pack][lane + 1]]);
-    let Some(block) = invert_block(block) else { return false };
-    let [[corner, upper], [lower, q]] = block.map(|row| row.map(Pack::splat));
+    let (upper_row, lower_row) = (&rows[k][pack], &rows[k + 1][pack]);
+    let block = [[upper_row[lane], upper_row[lane + 1]], [lower_row[lane], lower_row[lane + 1]]];
+    let Some([[corner, upper], [lower, q]]) = invert_block(block) else { return false };
+    let (corner, upper) = (Pack::splat(corner), Pack::splat(upper));
+    let (lower, q) = (Pack::splat(lower), Pack::splat(q));
     let [first, second] = [UNIT[lane], UNIT[lane + 1]];
     let keep = masks::<N>(pack, Pack::splat(1.0) - first - second);
     let (mut row_a, mut row_b) = ([Pack::splat(0.0); N], [Pack::splat(0.0); N]);
@@ -50,7 +52,7 @@ fn two_pivots<const N: usize>(rows: &mut [[[f64; LANES]; N]], k: usize) -> bool 
         row_b[n] = lower.mul_add(x, q * y);
     }
     for row in rows.iter_mut() {
-        let [x, y] = [-row[pack][lane], -row[pack][lane + 1]].map(Pack::splat);
+        let (x, y) = (Pack::splat(-row[pack][lane]), Pack::splat(-row[pack][lane + 1]));
         for n in 0..N {
             row[n] = y.mul_add(row_b[n], x.mul_add(row_a[n], keep[n] * Pack(row[n]))).0;
         }
@@ -141,9 +143,11 @@ fn two_pivots_wide(packs: &mut [[f64; LANES]], stride: usize, k: usize) -> bool 
     let (above, rest) = packs.split_at_mut(k * stride);
     let (pivots, below) = rest.split_at_mut(2 * stride);
     let (row_a, row_b) = pivots.split_at_mut(stride);
-    let block = [&*row_a, &*row_b].map(|row| [row[pack][lane], row[pack][lane + 1]]);
-    let Some(block) = invert_block(block) else { return false };
-    let [[corner, upper], [lower, q]] = block.map(|row| row.map(Pack::splat));
+    let block =
+        [[row_a[pack][lane], row_a[pack][lane + 1]], [row_b[pack][lane], row_b[pack][lane + 1]]];
+    let Some([[corner, upper], [lower, q]]) = invert_block(block) else { return false };
+    let (corner, upper) = (Pack::splat(corner), Pack::splat(upper));
+    let (lower, q) = (Pack::splat(lower), Pack::splat(q));
     let [first, second] = [UNIT[lane], UNIT[lane + 1]];
     let keep = Pack::splat(1.0) - first - second;
     row_a[pack] = (keep * Pack(row_a[pack]) + first).0;
@@ -154,7 +158,7 @@ fn two_pivots_wide(packs: &mut [[f64; LANES]], stride: usize, k: usize) -> bool 
         *b = lower.mul_add(x, q * y).0;
     }
     for row in above.chunks_exact_mut(stride).chain(below.chunks_exact_mut(stride)) {
-        let [x, y] = [-row[pack][lane], -row[pack][lane + 1]].map(Pack::splat);
+        let (x, y) = (Pack::splat(-row[pack][lane]), Pack::splat(-row[pack][lane + 1]));
         row[pack] = (keep * Pack(row[pack])).0;
         for ((own, a), b) in row.iter_mut().zip(row_a.iter()).zip(row_b.iter()) {
             *own = y.mul_add(Pack(*b), x.mul_add(Pack(*a), Pack(*own))).0;

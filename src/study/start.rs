@@ -12,8 +12,8 @@ pub enum Start {
     /// The block rests under its load, then the road starts within 0.5 ms: the block sticks first and begins
     /// on the limit cycle wherever there is one.
     Rest,
-    /// The road is braked from [`FAST`], where blocks slide steadily, within [`BRAKING`]: the block vibrates where
-    /// steady sliding is unstable, the paper's "self-excited".
+    /// The road is braked from 1 m/s, where blocks slide steadily, within 10 ms: the block vibrates where steady
+    /// sliding is unstable, the paper's "self-excited".
     Braking,
 }
 
