@@ -4,6 +4,8 @@
 
 PYTHON := .venv/bin/python
 CAMPAIGNS ?= ../shared/measurements/open
+# The tests that take minutes, not more, when every line is counted.
+TESTS ?= --lib --test effects --test contact_effects --test energy --test ringdown --test reduction --test gap --test cli
 
 help: ## This list
 	@grep -hE '^[a-z0-9-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | sort | expand -t 14
@@ -68,7 +70,7 @@ paper: ## The paper's studies on this model: out/paper/index.html
 	@packaging/setup.sh build
 	@cargo run --quiet --release --bin tread -- study all --out out/paper
 
-coverage: ## Lines that the Rust tests reach, by module: out/coverage/summary.csv and html (TESTS="--lib --test gap": some)
+coverage: ## Lines that the Rust tests reach, by module, in out/coverage (TESTS="--lib --test gap": others)
 	@packaging/setup.sh build run test
 	@packaging/coverage.sh $(TESTS)
 
