@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import logging
 import os
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import fmu_worker
 from fmu_worker import Kit
+
+if TYPE_CHECKING:
+    from distributed import LocalCluster
 
 Batch = list[int]
 Fail = Callable[[int, str], str]
@@ -31,16 +37,13 @@ def joblib(kit: Kit, batches: list[Batch], _fail: Fail, jobs: int) -> Iterator[l
 def dask(kit: Kit, batches: list[Batch], fail: Fail, jobs: int,
          scheduler: str | None) -> Iterator[list[str]]:
     """Batches of workers that are lost go to others; a point that kills its workers has failed."""
-    from distributed import Client, LocalCluster, WorkerPlugin, as_completed
+    from distributed import Client, WorkerPlugin, as_completed
     from distributed.scheduler import KilledWorker
 
     class Plugin(fmu_worker.KitPlugin, WorkerPlugin):
         name = f"tread-sweep-{kit.digest()[:16]}"
 
-    cluster = None
-    if scheduler is None:
-        cluster = LocalCluster(n_workers=jobs, threads_per_worker=1, dashboard_address=None)
-    with Client(scheduler or cluster) as client:
+    with nullcontext(scheduler) if scheduler else local_cluster(jobs) as cluster, Client(cluster) as client:
         client.upload_file(str(Path(fmu_worker.__file__)))
         client.register_plugin(Plugin(kit))
         submit = lambda batch: client.submit(fmu_worker.run_delivered, Plugin.name, batch, pure=False)
@@ -59,8 +62,21 @@ def dask(kit: Kit, batches: list[Batch], fail: Fail, jobs: int,
                     running[again] = [point]
                     queue.add(again)
             future.release()
-    if cluster is not None:
-        cluster.close()
+
+
+@contextmanager
+def local_cluster(jobs: int) -> Iterator[LocalCluster]:
+    """Workers on this machine, one thread each.
+
+    A heartbeat that is under way while they close logs a traceback (dask/distributed, issue 9032), after all
+    results have arrived: from here on the logs say nothing that a user could act on.
+    """
+    from distributed import Client, LocalCluster
+
+    with LocalCluster(n_workers=jobs, threads_per_worker=1, dashboard_address=None) as cluster:
+        yield cluster
+        with Client(cluster) as client:
+            client.run(logging.disable, logging.ERROR)
 
 
 def cores() -> int:
