@@ -3,12 +3,11 @@
 use super::identify::objective::Fineness;
 use super::plot::{svg, Panel, Series};
 use super::report::{csv, Study, Verdict};
-use super::slides::Reductions;
-use super::variation::{base, run_all, Run, Traces, DURATION, START};
-use crate::block::TreadBlock;
+use super::slides::{slide, Reductions};
+use super::variation::{base, run_all, Run, Traces, DURATION};
 use crate::error::Fault;
 use crate::params::Params;
-use crate::scenario::{self, Inputs, Plan};
+use crate::reduction::Reduction;
 
 /// Figure 4.
 ///
@@ -83,15 +82,11 @@ type Cycle = Vec<[f64; 2]>;
 /// Limit cycles of the nodes up the run-in edge, with their heights \[m\], and their swings \[m\].
 fn edge_cycles(run: &Run) -> Result<(Vec<(f64, Cycle)>, Vec<f64>), Fault> {
     const FINE_STEP: f64 = 5e-6;
-    let load = run.pressure * run.params.block.length * run.params.block.width;
-    let scenario = START.slide(run.speed, load);
-    let mut block =
-        TreadBlock::with_reduction(&run.params, Reductions::default().of(&run.params)?)?;
-    let nodes = run_in_nodes(&block);
+    let reductions = Reductions::default();
+    let nodes = run_in_nodes(&*reductions.of(&run.params)?);
     let mut motion: Vec<Vec<f64>> = vec![Vec::new(); nodes.len()];
-    let plan = Plan { step: FINE_STEP, duration: START.lead() + DURATION, inputs: Inputs::Exact };
-    scenario::run(&mut block, &scenario, &plan, |time, block| {
-        if time > plan.duration - 2e-3 {
+    slide(&run.params, &reductions, run.point(FINE_STEP), |time, block| {
+        if time > DURATION - 2e-3 {
             let field = block.field();
             for (trace, (node, _)) in motion.iter_mut().zip(&nodes) {
                 trace.push(field[*node][0]);
@@ -109,10 +104,10 @@ fn edge_cycles(run: &Run) -> Result<(Vec<(f64, Cycle)>, Vec<f64>), Fault> {
 
 /// Corner nodes of the elements along the run-in edge from the road upward, without the clamped one,
 /// with their heights above the tread face \[m\].
-fn run_in_nodes(block: &TreadBlock) -> Vec<(usize, f64)> {
-    let mesh = &block.reduction().mesh;
+fn run_in_nodes(reduction: &Reduction) -> Vec<(usize, f64)> {
+    let mesh = &reduction.mesh;
     let left = mesh.x[0];
-    let mut found: Vec<(usize, f64)> = (0..block.field().len())
+    let mut found: Vec<(usize, f64)> = (0..reduction.dof.len() / 2)
         .map(|node| (node, mesh.position(node)))
         .filter(|(_, p)| (p[0] - left).abs() < 1e-9)
         .map(|(node, p)| (node, p[1]))

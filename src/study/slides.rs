@@ -71,27 +71,43 @@ const PATIENCE: f64 = 5.0;
 /// of the paper stick.
 const SHORT_WINDOW: f64 = 0.5e-3;
 
+/// Slides a block and shows it at every row from the time on at which it is at its speed, with the time since then;
+/// stops at the first fault of the block or of `visit`.
+///
+/// # Errors
+/// What stops the block or `visit`.
+pub fn slide(
+    params: &Params,
+    reductions: &Reductions,
+    point: Point,
+    mut visit: impl FnMut(f64, &TreadBlock) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    let load = point.pressure * params.block.length * params.block.width;
+    let (scenario, lead) = (point.start.slide(point.speed, load), point.start.lead());
+    let mut block = TreadBlock::with_reduction(params, reductions.of(params)?)?;
+    let plan = Plan { step: point.step, duration: lead + point.duration, inputs: Inputs::Exact };
+    scenario::run(&mut block, &scenario, &plan, |time, block| {
+        if time < lead {
+            return Ok(());
+        }
+        visit(time - lead, block)
+    })
+}
+
 /// Slides a block; ends early when all vibration has died.
 ///
 /// # Errors
 /// What stops the block.
 pub fn observe(params: &Params, reductions: &Reductions, point: Point) -> Result<Observed, Fault> {
-    let load = point.pressure * params.block.length * params.block.width;
-    let (scenario, lead) = (point.start.slide(point.speed, load), point.start.lead());
-    let mut block = TreadBlock::with_reduction(params, reductions.of(params)?)?;
     let mut recorder = Recorder::default();
     let mut swings = Swings::new(WINDOW, point.step);
     let mut short = Swings::new(SHORT_WINDOW, point.step);
-    let plan = Plan { step: point.step, duration: lead + point.duration, inputs: Inputs::Exact };
-    let outcome = scenario::run(&mut block, &scenario, &plan, |time, block| {
-        if time < lead {
-            return Ok(());
-        }
+    let outcome = slide(params, reductions, point, |time, block| {
         let outputs = block.outputs();
-        recorder.push(time - lead, outputs);
+        recorder.push(time, outputs);
         swings.push(outputs.run_in_velocity[0]);
         short.push(outputs.run_in_velocity[0]);
-        if time > lead + PATIENCE * WINDOW && swings.last() < DEAD * point.speed.abs() {
+        if time > PATIENCE * WINDOW && swings.last() < DEAD * point.speed.abs() {
             return Err(died());
         }
         Ok(())

@@ -123,24 +123,6 @@ impl TableOne {
     }
 }
 
-impl TableOne {
-    /// What a block that starts from rest does otherwise, as a sentence.
-    fn changes(&self, braked: &Self) -> String {
-        let other: Vec<String> = self
-            .cells
-            .iter()
-            .zip(&braked.cells)
-            .filter(|(rest, braked)| (rest.hz() > 0.0) != (braked.hz() > 0.0))
-            .map(|(rest, _)| format!("{} ({:.0} Hz)", rest.place(), rest.hz()))
-            .collect();
-        let cells = if other.is_empty() { "the same cells".to_string() } else { other.join(", ") };
-        format!(
-            "The road is braked from 1 m/s to its speed; a block that starts from rest begins on the limit \
-             cycle wherever there is one, and vibrates in addition at: {cells}.\n"
-        )
-    }
-}
-
 /// The study.
 ///
 /// # Errors
@@ -176,6 +158,22 @@ pub fn table_1(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
 }
 
 impl TableOne {
+    /// What a block that starts from rest does otherwise, as a sentence.
+    fn changes(&self, braked: &Self) -> String {
+        let other: Vec<String> = self
+            .cells
+            .iter()
+            .zip(&braked.cells)
+            .filter(|(rest, braked)| (rest.hz() > 0.0) != (braked.hz() > 0.0))
+            .map(|(rest, _)| format!("{} ({:.0} Hz)", rest.place(), rest.hz()))
+            .collect();
+        let cells = if other.is_empty() { "no cell".to_string() } else { other.join(", ") };
+        format!(
+            "The road is braked from 1 m/s to its speed; a block that starts from rest begins on the limit \
+             cycle wherever there is one. Silent or loud by the start: {cells}.\n"
+        )
+    }
+
     fn verdicts(&self) -> Vec<Verdict> {
         let per_cent = |x: f64| format!("{:.1} %", 100.0 * x);
         let wrong = self.disagreements();

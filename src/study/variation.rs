@@ -6,13 +6,11 @@ use super::identify::objective::Fineness;
 use super::paper::PRESSURE;
 use super::plot::{Panel, Series};
 use super::report::csv;
-use super::slides::{sticking, Reductions};
+use super::slides::{slide, sticking, Point, Reductions};
 use super::start::Start;
-use crate::block::TreadBlock;
 use crate::error::Fault;
 use crate::metrics::{stick_slip, Recorder, StickSlip};
 use crate::params::Params;
-use crate::scenario::{self, Inputs, Plan};
 
 /// Height and length \[m\] of the base case: the only column of Table 1 with 2550 Hz at 300 mm/s.
 pub const BASE: (f64, f64) = (0.010, 0.045);
@@ -20,8 +18,6 @@ pub const BASE: (f64, f64) = (0.010, 0.045);
 pub const SPEED: f64 = 0.300;
 /// Length of the runs at their speed \[s\].
 pub const DURATION: f64 = 20e-3;
-/// How they come to it.
-pub const START: Start = Start::Braking;
 /// Distance of rows \[s\].
 const STEP: f64 = 2e-5;
 
@@ -45,6 +41,14 @@ pub struct Run {
     pub speed: f64,
     /// Mean pressure \[Pa\].
     pub pressure: f64,
+}
+
+impl Run {
+    /// What slides, with rows every `step` \[s\].
+    pub fn point(&self, step: f64) -> Point {
+        let (speed, pressure) = (self.speed, self.pressure);
+        Point { speed, pressure, start: Start::Braking, duration: DURATION, step }
+    }
 }
 
 /// Traces of the edges and what they amount to.
@@ -79,16 +83,8 @@ pub fn run_all(runs: Vec<Run>) -> Result<Vec<Ran>, Fault> {
 }
 
 fn simulate(run: Run, reductions: &Reductions) -> Result<Ran, Fault> {
-    let load = run.pressure * run.params.block.length * run.params.block.width;
-    let scenario = START.slide(run.speed, load);
-    let mut block = TreadBlock::with_reduction(&run.params, reductions.of(&run.params)?)?;
     let (mut traces, mut recorder) = (Traces::default(), Recorder::default());
-    let plan = Plan { step: STEP, duration: START.lead() + DURATION, inputs: Inputs::Exact };
-    scenario::run(&mut block, &scenario, &plan, |time, block| {
-        let time = time - START.lead();
-        if time < 0.0 {
-            return Ok(());
-        }
+    slide(&run.params, reductions, run.point(STEP), |time, block| {
         let o = block.outputs();
         recorder.push(time, o);
         traces.time.push(time);

@@ -94,17 +94,6 @@ impl Compared {
         (self.hz() > 0.0) == (self.cell() != Cell::Silent)
     }
 
-    /// Where the block is silent and should not be: the rate at which the vibration of a start from rest dies. A block
-    /// that came to slide steadily from a higher speed has none that could.
-    fn tell_how_silent(&mut self, params: &Params, reductions: &Reductions, point: Point) {
-        if self.agrees() || self.hz() > 0.0 {
-            return;
-        }
-        let Some(observed) = &mut self.observed else { return };
-        let from_rest = observe(params, reductions, Point { start: Start::Rest, ..point });
-        observed.growth = from_rest.map_or(0.0, |rest| rest.growth.min(0.0));
-    }
-
     /// Residual: the logarithm of the frequency ratio; where the block is silent (or loud) and should not be, a
     /// small step and then what grows with how clearly it is, so that a search feels which way is out.
     pub fn residual(&self) -> f64 {
@@ -167,23 +156,33 @@ pub fn compare(
     cells
         .into_par_iter()
         .map(|(column, row)| {
-            let mut params = base.clone();
-            params.block.height = column.height;
-            params.block.length = column.length;
-            fineness.apply(&mut params);
-            let point = Point {
-                speed: SPEEDS[row],
-                pressure: PRESSURE,
-                start,
-                duration: duration(column.cells[row]),
-                step: fineness.step,
-            };
-            let mut cell =
-                Compared { column, row, observed: observe(&params, reductions, point).ok() };
-            cell.tell_how_silent(&params, reductions, point);
-            cell
+            let observed = observe_cell(base, &column, row, fineness, start, reductions);
+            Compared { column, row, observed: observed.ok() }
         })
         .collect()
+}
+
+/// Runs one cell.
+fn observe_cell(
+    base: &Params,
+    column: &Column,
+    row: usize,
+    fineness: &Fineness,
+    start: Start,
+    reductions: &Reductions,
+) -> Result<Observed, Fault> {
+    let mut params = base.clone();
+    params.block.height = column.height;
+    params.block.length = column.length;
+    fineness.apply(&mut params);
+    let point = Point {
+        speed: SPEEDS[row],
+        pressure: PRESSURE,
+        start,
+        duration: duration(column.cells[row]),
+        step: fineness.step,
+    };
+    observe(&params, reductions, point)
 }
 
 /// E/ρ \[m²/s²\] at which the eigenfrequencies of the free blocks fit Table 1 best.
@@ -236,7 +235,23 @@ impl Problem<'_> {
 
     /// Residuals at `x`, cell by cell.
     pub fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        self.compare(x).iter().map(Compared::residual).collect()
+        let params = self.params(x);
+        let mut cells = self.compare(x);
+        cells.par_iter_mut().for_each(|cell| self.tell_how_silent(cell, &params));
+        cells.iter().map(Compared::residual).collect()
+    }
+
+    /// Where the block is silent and should not be: the rate at which the vibration of a start from rest dies. A block
+    /// that came to slide steadily from a higher speed has none that could.
+    fn tell_how_silent(&self, cell: &mut Compared, params: &Params) {
+        if cell.agrees() || cell.hz() > 0.0 {
+            return;
+        }
+        let Some(observed) = &mut cell.observed else { return };
+        let (column, row) = (&cell.column, cell.row);
+        let from_rest =
+            observe_cell(params, column, row, &self.fineness, Start::Rest, self.reductions);
+        observed.growth = from_rest.map_or(0.0, |rest| rest.growth.min(0.0));
     }
 
     /// All cells at `x`.
