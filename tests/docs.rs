@@ -143,3 +143,14 @@ fn every_equation_that_the_code_cites_is_in_the_theory() {
     }
     assert!(missing.is_empty(), "not in docs/src/theory.md:\n{}", missing.join("\n"));
 }
+
+#[test]
+fn every_effect_cites_its_equation() {
+    let silent: Vec<String> = files(&root().join("src/effects"), "rs")
+        .into_iter()
+        .filter(|path| !["mod.rs", "fit.rs"].iter().any(|name| path.ends_with(name)))
+        .filter(|path| !read(path).contains("theory eq"))
+        .map(|path| path.display().to_string())
+        .collect();
+    assert!(silent.is_empty(), "without an equation of docs/src/theory.md: {silent:?}");
+}

@@ -21,7 +21,7 @@ impl Form {
 }
 
 /// Traction τ_a·s(v)·A(p)/A₀ beside friction and −p_a·A(p)/A₀ beside the pressure, s the smoothed
-/// sign of friction and A(p)/A₀ = 1 − exp(−p/p_s) the adhering share (see [`Self::saturation`]).
+/// sign of friction and A(p)/A₀ = 1 − exp(−p/p_s) the adhering share (see [`Self::saturation`]; theory eq. 7.6).
 ///
 /// Tolpekina and Persson, Lubricants 7(3) 20 (2019): the adhesive term τ_f A/A₀ beside hysteresis;
 /// the exponential saturation stands for Persson's error function.

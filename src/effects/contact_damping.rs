@@ -20,7 +20,7 @@ impl Form {
     pub const ALL: [Self; 2] = [Self::HuntCrossley, Self::Kelvin];
 }
 
-/// Rate-dependent contact pressure, never negative: the road does not pull.
+/// Rate-dependent contact pressure, never negative: the road does not pull (theory eqs. 7.11, 7.12).
 ///
 /// Hunt and Crossley, J. Appl. Mech. 42 (1975): p·(1 + c·u̇), c about 1.5 times the loss of
 /// restitution per speed. Kelvin: p + d·u̇, the damper faded in over the contact depth u₀ so that

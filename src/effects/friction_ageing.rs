@@ -22,16 +22,16 @@ impl Form {
     pub const ALL: [Self; 3] = [Self::Dieterich, Self::Saturating, Self::Additive];
 }
 
-/// Contact age per node; friction is multiplied by a factor that is 1 in steady sliding at the
+/// Contact age per node (theory eqs. 7.3 to 7.5); friction is multiplied by a factor that is 1 in steady sliding at the
 /// reference speed v_r, so that the friction law keeps its meaning.
 ///
 /// `dieterich` (ageing law, Dieterich, J. Geophys. Res. 84, 1979): θ̇ = 1 − |v|θ/D_c and
 /// 1 + b·\[ln(1 + θ/t_c) − ln(1 + θ_r/t_c)\], θ_r = D_c/v_r. `saturating` (exponential growth of static
 /// friction with rest: Brockley and Davis, J. Lubr. Technol. 90, 1968): share φ of full strength,
-/// φ̇ = (1 − φ)/t_c − |v|φ/D_c, and 1 + b·(φ − φ_r). `additive` (the sum of rate and state as Ruina, J. Geophys. Res. 88, 1983, writes it, with the
-/// ageing law): μ(p, v) + b·ln(1 + θ/t_c) at the pressure of reference, the characteristic being that of a
-/// contact without age. Ruina's slip law is left out: its contacts do not
-/// age at rest.
+/// φ̇ = (1 − φ)/t_c − |v|φ/D_c, and 1 + b·(φ − φ_r). `additive` (the sum of rate and state as Ruina,
+/// J. Geophys. Res. 88, 1983, writes it, with the ageing law): μ(p, v) + b·ln(1 + θ/t_c) at the pressure
+/// of reference, the characteristic being that of a contact without age. Ruina's slip law is left out:
+/// its contacts do not age at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionAgeing {
     /// Is the effect on?

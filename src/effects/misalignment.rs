@@ -21,7 +21,7 @@ impl Form {
 }
 
 /// A gap g(x) = −x·tan φ before the face touches, x from the middle of the face towards run-out: a
-/// positive angle opens the run-in edge.
+/// positive angle opens the run-in edge (theory eq. 7.14).
 ///
 /// First order of a rotation by φ: pressure shifts towards the run-out edge by ∂p/∂u·l·φ/2
 /// (wedge of gap, as in any alignment error of a tribometer). The carriage does not turn.

@@ -21,7 +21,7 @@ impl Form {
 }
 
 /// Stiffness factor f(γ)/f(γ_r) of the whole block, γ = |ū|/h its mean shear: the mean tangential
-/// displacement ū of the tread face over the height h. Pressing at rest does not shear and does not
+/// displacement ū of the tread face over the height h (theory eqs. 7.8, 7.9). Pressing at rest does not shear and does not
 /// soften: filler networks break with the amplitude of deformation and heal at rest.
 ///
 /// `kraus` (Kraus, Rubber Chem. Technol. 51, 1978, with m = 0.55): f = 1 − s·x/(1 + x),

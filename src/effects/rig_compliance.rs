@@ -32,7 +32,7 @@ impl Form {
 }
 
 /// A sprung, damped tangential degree of freedom ξ of the clamped face against its drive:
-/// m ξ̈ + 2ζ√(m k) ξ̇ + k ξ = F, k = 1/C.
+/// m ξ̈ + 2ζ√(m k) ξ̇ + k ξ = F, k = 1/C (theory eq. 7.15).
 ///
 /// Form `fixture`: m = 1/(C(2πf)²) from the frequency f without the block; form `carriage`: m is
 /// the mass of the load carriage. Rig resonance as the textbook spring-mass slider.

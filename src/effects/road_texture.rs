@@ -21,7 +21,7 @@ impl Form {
     pub const ALL: [Self; 2] = [Self::Sine, Self::Band];
 }
 
-/// Height of the road over its own coordinate x \[m\].
+/// Height of the road over its own coordinate x \[m\] (theory eq. 7.10).
 ///
 /// `sine`: a·sin(2πx/λ + φ). `band`: eight sines with wavelengths from λ/2 to 2λ, amplitudes falling
 /// as the square of the wavenumber (self-affine road, H = 1: C(q) ∝ q^−4 per direction, Persson et

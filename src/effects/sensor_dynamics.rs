@@ -21,7 +21,8 @@ impl Form {
     pub const ALL: [Self; 2] = [Self::FirstOrder, Self::Butterworth];
 }
 
-/// Low-pass 1/(1 + sτ) or 1/(1 + √2 sτ + s²τ²) and a delay T, on `contact.force` and `force`.
+/// Low-pass 1/(1 + sτ) or 1/(1 + √2 sτ + s²τ²) and a delay T, on `contact.force` and `force`
+/// (theory eqs. 7.16, 7.17).
 ///
 /// The cut-off (−3 dB) is 1/(2πτ) in both forms. The delay is Padé's all-pass of second order,
 /// (12 − 6sT + s²T²)/(12 + 6sT + s²T²), whose phase is right within 1 % up to sT = 2. Between

@@ -20,7 +20,7 @@ impl Form {
     pub const ALL: [Self; 2] = [Self::Lumped, Self::Macroasperity];
 }
 
-/// Flash temperature rise T \[K\] per contact node, from the friction power density q = μ p |v|.
+/// Flash temperature rise T \[K\] per contact node, from the friction power density q = μ p |v| (theory eqs. 7.1, 7.2).
 ///
 /// `lumped`: Ṫ = q/(ρ c δ φ) − T/τ with the skin δ = √(κτ/ρc) that heat reaches within τ, and
 /// μ → μ/(1 + c_T T). `macroasperity` (Persson, J. Phys.: Condens. Matter 18, 2006; memory over the

@@ -29,7 +29,7 @@ impl Form {
     pub const ALL: [Self; 2] = [Self::OneBranch, Self::TwoBranches];
 }
 
-/// E(ω) = E·(1 + Σ gⱼ jωτⱼ/(1 + jωτⱼ)): the static modulus is E, the one far above 1/τ is (1 + g)E.
+/// E(ω) = E·(1 + Σ gⱼ jωτⱼ/(1 + jωτⱼ)): the static modulus is E, the one far above 1/τ is (1 + g)E (theory eq. 7.7).
 ///
 /// Generalised Maxwell (Prony) model of rubber; for a tread block Liu, Sutcliffe and Graham, Tire
 /// Sci. Technol. 36(3) (2008). The damping β stays as it is.

@@ -21,7 +21,7 @@ impl Form {
 }
 
 /// Depth d·(1 − s/L)ⁿ behind the plane of the face at distance s < L from the run-in edge; n = 2
-/// rounded (an arc of radius L²/2d), n = 1 chamfer.
+/// rounded (an arc of radius L²/2d), n = 1 chamfer (theory eq. 7.13).
 ///
 /// Shape of worn blocks: Hofstetter et al., and TU Dresden/Hannover, Lubricants 9(12) 113 (2021):
 /// the leading edge is worn to 0.1 to 1 mm.
