@@ -108,11 +108,6 @@ impl Integrator {
         self.last_h = last_h;
     }
 
-    /// The stage at the end of the last step.
-    pub fn last_stage(&self) -> &Stage {
-        &self.step.stage
-    }
-
     /// Moves `state` over `h` \[s\]; `after_step(step size, end of step, state)` sees every accepted
     /// step and may change the state's factors and worn depths.
     ///

@@ -1,6 +1,5 @@
 //! What a fit may vary in an effect: parameters with their prior knowledge, per functional form.
 
-use super::Effects;
 use crate::params::{table, Params, Value};
 
 /// Module of the model to which an effect belongs.
@@ -116,15 +115,10 @@ pub const fn signed(name: &'static str, centre: f64, std: f64) -> FitParam {
     FitParam { name, centre, spread: Spread::Absolute(std) }
 }
 
-/// Switches all effects of `params` off.
-pub fn all_off(params: &mut Params) {
-    params.effect = Effects::default();
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effects::{fit_specs, NAMES};
+    use crate::effects::{fit_specs, Effects, NAMES};
     use crate::params::{check, Kind};
 
     #[test]
