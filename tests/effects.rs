@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use tread_block::block::{Outputs, Shape};
 use tread_block::effects::{fit_specs, FitSpec};
 use tread_block::reduction::Reduction;
-use tread_block::scenario::{Scenario, Slide};
+use tread_block::scenario::{self, Inputs, Plan, Scenario, Slide};
 use tread_block::{Params, TreadBlock};
 
 /// Load of 250 kPa on the default block's 15 mm × 15 mm [N].
@@ -302,4 +302,35 @@ fn a_road_that_starts_under_the_block_gives_it_no_inertia() {
         let force = rows[row].contact_force[0];
         assert!((force / expected - 1.0).abs() < 0.01, "{force} {expected}");
     }
+}
+
+#[test]
+fn a_corner_that_falls_into_slip_faster_than_any_step_is_passed() {
+    // An aged corner of a coarse mesh under ten times the mean pressure falls into slip at 2e7/s, where the
+    // smallest step, 0.1 us, has no tangent. Two grids of steps, which pass it at different places, have to tell the
+    // same impulse of friction up to their error of 1 %.
+    let mut params = with("friction_ageing", 2, Some(0.128));
+    params.block.height = 8e-3;
+    (params.solver.elements_along, params.solver.elements_up) = (6, 4);
+    params.solver.tolerance = 3e-3;
+    (params.contact.depth, params.contact.reference_pressure) = (3.73e-5, 69.7e3);
+    (params.friction.mu_drop, params.friction.decay_speed) = (0.68, 0.3135);
+    (params.friction.mu_inf, params.friction.pressure_exponent) = (0.49, -0.076);
+    (params.carriage.mass, params.carriage.damping) = (2.0, 240.0);
+    params.effect.friction_ageing.distance = 1.3e-5;
+    params.effect.friction_ageing.initial_age = 0.2;
+    let impulse = |step: f64| {
+        let mut block = TreadBlock::new(&params).unwrap();
+        let scenario = Scenario::Slide(Slide::constant(0.3, 600e3 * 0.015 * 0.015));
+        let plan = Plan { step, duration: 4e-3, inputs: Inputs::Exact };
+        let mut sum = 0.0;
+        scenario::run(&mut block, &scenario, &plan, |_, block| {
+            sum += step * block.outputs().contact_force[0];
+            Ok(())
+        })
+        .unwrap();
+        sum
+    };
+    let (coarse, fine) = (impulse(40e-6), impulse(10e-6));
+    assert!((coarse / fine - 1.0).abs() < 0.01, "{coarse} N s, {fine} N s");
 }

@@ -44,6 +44,8 @@ pub(super) struct Newton {
     /// K⁻¹, column by column, for the slopes in `slopes`; see [`Self::renew_inverse`].
     inverse: Aligned,
     known: bool,
+    /// No tangent is steeper than the first of [`STEEPEST_FALL`], in all iterations.
+    gentle: bool,
     compact: Aligned,
     /// −∂f/∂v per node in the block's frame: xx, xz, zx, zz \[N s/m\].
     slopes: Vec<[f64; 4]>,
@@ -64,6 +66,7 @@ impl Newton {
             matrix: Aligned::zeros(4 * nodes * nodes),
             inverse: Aligned::zeros(nodes * stride),
             known: false,
+            gentle: false,
             compact: Aligned::zeros(2 * nodes),
             slopes: vec![[0.0; 4]; stride],
             nodes,
@@ -73,6 +76,18 @@ impl Newton {
     /// The inverse is made anew before it is used again.
     pub(super) fn forget(&mut self) {
         self.known = false;
+    }
+
+    /// Creeps to a solution that the tangent misses: slowly, but its matrix is always positive definite.
+    pub(super) fn set_gentle(&mut self, gentle: bool) {
+        self.gentle = gentle;
+        self.known = false;
+    }
+
+    /// Largest fall that the direction of an iteration follows, as a share of the block's resistance.
+    #[inline(always)]
+    fn steepest_fall(&self, iteration: usize) -> f64 {
+        STEEPEST_FALL[usize::from(!self.gentle && NEAR.contains(&iteration))]
     }
 
     /// Keeps K⁻¹ = (B + g − c Pᵀ)⁻¹ for the slopes as they stand, unless it holds for slopes that
@@ -85,7 +100,7 @@ impl Newton {
         iteration: usize,
         slow: bool,
     ) -> bool {
-        let steepest_fall = STEEPEST_FALL[usize::from(NEAR.contains(&iteration))];
+        let steepest_fall = self.steepest_fall(iteration);
         let stride = self.residual.len();
         let mut near = self.known && iteration < CHORDS && !slow;
         for i in 0..self.nodes {
@@ -173,8 +188,8 @@ impl Stage {
         motion: &Kinematics,
         iteration: usize,
     ) -> bool {
-        let steepest_fall = STEEPEST_FALL[usize::from(NEAR.contains(&iteration))];
         let n = &mut self.newton;
+        let steepest_fall = n.steepest_fall(iteration);
         n.forget();
         let (nodes, stride) = (n.nodes, self.slip.len());
         let size = 2 * nodes;

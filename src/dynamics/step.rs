@@ -152,10 +152,15 @@ impl Integrator {
         mut level: usize,
     ) -> Result<usize, Fault> {
         let from = interval * (at as f64 / TICKS as f64);
+        let mut gentle = false;
         loop {
             let h = interval / (1_usize << level) as f64;
             let last_resort = level == LEVELS || 0.5 * h < self.settings.min_step;
-            match self.try_step(linear, face, state, segment, from, h, level) {
+            let tried = self.try_step(linear, face, state, segment, from, h, level);
+            if gentle {
+                self.step.stage.newton.set_gentle(false);
+            }
+            match tried {
                 Ok(ratio) => {
                     let growth = (0.9 * ratio.max(1e-6).powf(-1.0 / 3.0)).clamp(0.3, 2.0);
                     state.step = (h * growth).min(self.settings.max_step);
@@ -164,7 +169,14 @@ impl Integrator {
                         return Ok(level);
                     }
                 }
-                Err(fault) if last_resort => return Err(fault),
+                Err(fault) if last_resort && gentle => return Err(fault),
+                Err(_) if last_resort => {
+                    // A corner under many times the mean pressure may fall into slip at 10⁷/s, faster than any
+                    // step that one would take: its end is found without the way to it.
+                    gentle = true;
+                    self.step.stage.newton.set_gentle(true);
+                    continue;
+                }
                 Err(_) => state.step = 0.25 * h,
             }
             self.statistics.rejected += 1;

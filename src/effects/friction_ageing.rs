@@ -137,7 +137,7 @@ const FORMS: &[Item] = &[
 pub static PARAMS: &[ParamSpec] = &[
     bool_param!("effect.friction_ageing.enabled", effect.friction_ageing.enabled, Fixed, "Ageing of the contact: friction grows with the time of contact"),
     enum_param!("effect.friction_ageing.form", effect.friction_ageing.form, Form, "FrictionAgeingForm", FORMS, Fixed, "How age strengthens the contact"),
-    real_param!("effect.friction_ageing.strength", effect.friction_ageing.strength, "1", None, 0.0, 2.0, 0.08, Tunable, "Strength: gain of friction per e-fold of age, or in all (form saturating); 0: none"),
+    real_param!("effect.friction_ageing.strength", effect.friction_ageing.strength, "1", None, 0.0, 20.0, 0.08, Tunable, "Strength: gain of friction per e-fold of age, or in all (form saturating); 0: none"),
     real_param!("effect.friction_ageing.distance", effect.friction_ageing.distance, "m", UM, 1e-8, 1e-2, 1e-5, Tunable, "Sliding distance that renews the contact"),
     real_param!("effect.friction_ageing.time", effect.friction_ageing.time, "s", MS, 1e-7, 1e4, 1e-4, Tunable, "Time from which age counts, or in which strength saturates"),
     real_param!("effect.friction_ageing.reference_speed", effect.friction_ageing.reference_speed, "m/s", MM_S, 1e-4, 100.0, 0.3, Tunable, "Speed of steady sliding at which friction is as without the effect"),

@@ -1,7 +1,7 @@
 //! Where fits begin: from the datasheet, for the base model and for every effect alike.
 
 use super::campaign::RunKind;
-use super::fit::{approach, evaluate, Effort, Noise};
+use super::fit::{approach, evaluate, Effort, Fit, Noise};
 use super::hypotheses::{effort, Method, SETTLED};
 use super::problem::{Bench, Choice};
 use super::symmetry::{self, Finding};
@@ -72,13 +72,29 @@ pub fn first_guess(
             let points = starts(bench, &added, &datasheet);
             points.into_iter().map(move |x| evaluate(bench, &added, x, of))
         });
-        let Some(fit) = fits.min_by(|a, b| a.objective.total_cmp(&b.objective)) else { continue };
-        let fit = approach(bench, fit, of, &FIRST);
+        let towards = |fit| approach(bench, fit, of, &FIRST[..1]);
+        let near = best_of(STARTED, fits.collect()).into_iter().map(towards).collect();
+        let arrive = |fit| approach(bench, fit, of, &FIRST[1..]);
+        let ends = best_of(ARRIVING, near).into_iter().map(arrive);
+        let Some(fit) = ends.reduce(Fit::or_better) else { continue };
         let level = fit.objective / bench.total_weight(of);
         effects.push(Some((fit.added, fit.x, level)));
     }
-    let level = base.objective / bench.total_weight(of);
-    Ok(Guess { base: base.x, level, effects, findings })
+    progress(0.15, "the most promising effects to the end of the first millisecond");
+    let base = approach(bench, base, of, &TO_THE_END);
+    let total = bench.total_weight(of);
+    for guess in most_promising(&mut effects).into_iter().take(GUESSED).flatten() {
+        let fit = approach(bench, evaluate(bench, &guess.0, guess.1.clone(), of), of, &TO_THE_END);
+        *guess = (fit.added, fit.x, fit.objective / total);
+    }
+    Ok(Guess { base: base.x, level: base.objective / total, effects, findings })
+}
+
+/// Guesses from the best to the worst; those without a fit last.
+fn most_promising(effects: &mut [Option<FirstGuess>]) -> Vec<&mut Option<FirstGuess>> {
+    let mut order: Vec<&mut Option<FirstGuess>> = effects.iter_mut().collect();
+    order.sort_by(|a, b| level_of(a).total_cmp(&level_of(b)));
+    order
 }
 
 /// The base model and the most promising effects once more, on runs twice as long: an optimum of the
@@ -99,10 +115,7 @@ pub fn second_guess(
     let base = approach(bench, evaluate(bench, &[], guess.base.clone(), of), of, &SECOND);
     guess.level = base.objective / total;
     guess.base = base.x;
-    let mut likely: Vec<&mut Option<FirstGuess>> =
-        guess.effects.iter_mut().filter(|e| e.is_some()).collect();
-    likely.sort_by(|a, b| level_of(a).total_cmp(&level_of(b)));
-    for (rank, effect) in likely.into_iter().enumerate() {
+    for (rank, effect) in most_promising(&mut guess.effects).into_iter().enumerate() {
         let Some((added, x, _)) = effect.take().filter(|_| rank < GUESSED) else { continue };
         progress(0.16 + 0.02 * rank as f64, "second guess of the most promising effects");
         let fit = approach(bench, evaluate(bench, &added, x, of), of, &SECOND);
@@ -116,10 +129,25 @@ fn level_of(guess: &Option<FirstGuess>) -> f64 {
     guess.as_ref().map_or(f64::INFINITY, |g| g.2)
 }
 
+/// On the first millisecond the optimum is smooth and reached in full; on longer starts an optimum beside it has no
+/// slope towards it.
+const TO_THE_END: [Effort; 2] = [effort(4, 2, 3.0, None), effort(6, 2, 1.0, None)];
 /// From one horizon to the next.
 const SECOND: [Effort; 2] = [effort(4, 2, 2.0, None), effort(4, 2, 1.0, None)];
 /// So many effects go on from their own first guess.
 const GUESSED: usize = 5;
+
+/// So many starts of an effect, the best of all its forms, go on: the best one often ends beside the optimum.
+const STARTED: usize = 4;
+/// So many of them to the end.
+const ARRIVING: usize = 2;
+
+/// The `count` best fits.
+fn best_of(count: usize, mut fits: Vec<Fit>) -> Vec<Fit> {
+    fits.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+    fits.truncate(count);
+    fits
+}
 
 /// From the datasheet towards the optimum of an effect, on the first millisecond.
 const FIRST: [Effort; 2] = [effort(4, 2, 4.0, None), effort(3, 3, 1.0, None)];
