@@ -2,7 +2,8 @@
 
 use super::calibration::{
     BLUR, CLASS_FROM, CLASS_SIZE, CONTRADICTION, GOOD, INADEQUATE, KNOWN_BREAKER, NAME_FROM,
-    NO_GAP, PRIOR_NONE, PRIOR_PAIR, PRIOR_UNKNOWN, SHARPNESS, TEXTURE_ALLOWANCE, UNKNOWN_LEAVES,
+    NO_GAP, PRIOR_NONE, PRIOR_PAIR, PRIOR_UNKNOWN, SHARPNESS, SURENESS, TEXTURE_ALLOWANCE,
+    UNKNOWN_LEAVES,
 };
 use super::hypotheses::{Fits, Hypothesis};
 use super::problem::Bench;
@@ -115,10 +116,11 @@ pub fn weigh(fits: &Fits) -> Vec<Weighed> {
         nats.push((Cause::Pair(k), evidence(pair.level) + PRIOR_PAIR - against(pair)));
     }
     let highest = nats.iter().map(|n| n.1).fold(f64::NEG_INFINITY, f64::max);
-    let total: f64 = nats.iter().map(|n| (n.1 - highest).exp()).sum();
+    let odds = |n: f64| (SURENESS * (n - highest)).exp();
+    let total: f64 = nats.iter().map(|n| odds(n.1)).sum();
     let mut out: Vec<Weighed> = nats
         .into_iter()
-        .map(|(cause, n)| Weighed { cause, probability: (n - highest).exp() / total })
+        .map(|(cause, n)| Weighed { cause, probability: odds(n) / total })
         .collect();
     out.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     out
