@@ -5,6 +5,7 @@ use super::fit::{approach, evaluate, Effort, Fit, Noise};
 use super::hypotheses::{effort, Method, SETTLED};
 use super::problem::{Bench, Choice};
 use super::symmetry::{self, Finding};
+use crate::effects::Module;
 use crate::error::Fault;
 
 /// Whitened severities from which an effect is started.
@@ -41,7 +42,8 @@ impl Guess {
 }
 
 /// First guesses from the free block and the first millisecond: `bench` looks at no more. An effect
-/// begins at the datasheet and not at the recalibrated base model, which its absence has bent.
+/// begins at the datasheet, with modulus and damping of the free block, and not at the recalibrated base model, which
+/// its absence has bent.
 ///
 /// # Errors
 /// What stops the reduction of the block.
@@ -52,8 +54,8 @@ pub fn first_guess(
     method: Method,
     progress: &(dyn Fn(f64, &str) + Sync),
 ) -> Result<Guess, Fault> {
-    let struck = struck(bench, vec![0.0; bench.base_size()], of);
-    let first = approach(bench, evaluate(bench, &[], struck, of), of, &FAR[..1]);
+    let free = struck(bench, &[], vec![0.0; bench.base_size()], of);
+    let first = approach(bench, evaluate(bench, &[], free.clone(), of), of, &FAR[..1]);
     bench.measure_floor(&bench.params(&[], &first.x), of)?;
     let bench: &Bench = bench;
     let base = approach(bench, evaluate(bench, &[], first.x, of), of, &FAR[1..]);
@@ -66,10 +68,17 @@ pub fn first_guess(
         }
         progress(0.05 + 0.01 * effect as f64, &format!("first guess of {}", spec.effect));
         let forms = if method.families { spec.forms.len() } else { 1 };
-        let datasheet = vec![0.0; bench.base_size()];
+        let free = &free;
         let fits = (0..forms).flat_map(|form| {
             let added = vec![Choice { effect, form }];
-            let points = starts(bench, &added, &datasheet);
+            let mut points = starts(bench, &added, free);
+            if spec.module == Module::Dynamic {
+                // The free block tells of such an effect, too.
+                let few = points.iter().take(STARTS.len());
+                let ringing: Vec<Vec<f64>> =
+                    few.map(|x| struck(bench, &added, x.clone(), of)).collect();
+                points.extend(ringing);
+            }
             points.into_iter().map(move |x| evaluate(bench, &added, x, of))
         });
         let towards = |fit| approach(bench, fit, of, &FIRST[..1]);
@@ -142,9 +151,10 @@ const STARTED: usize = 4;
 /// So many of them to the end.
 const ARRIVING: usize = 2;
 
-/// The `count` best fits.
+/// The `count` best fits, each place once.
 fn best_of(count: usize, mut fits: Vec<Fit>) -> Vec<Fit> {
     fits.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+    fits.dedup_by(|a, b| a.objective - b.objective < 1e-3 * b.objective);
     fits.truncate(count);
     fits
 }
@@ -181,13 +191,13 @@ pub(super) fn starts(bench: &Bench, added: &[Choice], x: &[f64]) -> Vec<Vec<f64>
 /// Points at which effects with three parameters are looked at before one is taken.
 const DRAWN: usize = 24;
 
-/// The free block alone tells modulus and damping, and costs next to nothing.
-pub fn struck(bench: &Bench, start: Vec<f64>, of: &[usize]) -> Vec<f64> {
+/// The free block alone tells modulus and damping, also beside an effect that acts in it, and costs next to nothing.
+pub fn struck(bench: &Bench, added: &[Choice], start: Vec<f64>, of: &[usize]) -> Vec<f64> {
     let free = |r: &usize| bench.runs[*r].kind == RunKind::Ringdown;
     let rung: Vec<usize> = of.iter().copied().filter(free).collect();
     if rung.is_empty() {
         return start;
     }
-    let fit = evaluate(bench, &[], start, &rung);
-    approach(bench, fit, &rung, &[effort(4, 1, 5.0, None), effort(4, 1, 1.0, None)]).x
+    let fit = evaluate(bench, added, start, &rung);
+    approach(bench, fit, &rung, &[effort(4, 2, 5.0, None), effort(4, 2, 1.0, None)]).x
 }
