@@ -3,8 +3,9 @@
 use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
 use super::guess::{starts, Guess};
 use super::pairs::{alone, pairs};
-use super::problem::{Bench, Choice, Look};
+use super::problem::{Bench, Choice, Coordinate, Look};
 use super::symmetry::{self, Finding};
+use crate::effects::Spread;
 use crate::error::Fault;
 use nalgebra::DMatrix;
 
@@ -57,8 +58,7 @@ fn ruled_out(bench: &Bench, base: &Fit, choice: Choice, of: &[usize]) -> Hypothe
     fit.added = vec![choice];
     fit.x.resize(bench.coordinates(&fit.added).len(), 0.0);
     fit.x[base.x.len()] = NEXT_TO_NONE;
-    if let crate::effects::Spread::Absolute(_) = bench.coordinates(&fit.added)[base.x.len()].spread
-    {
+    if let Spread::Absolute(_) = bench.coordinates(&fit.added)[base.x.len()].spread {
         fit.x[base.x.len()] = 0.0;
     }
     fit.jacobian = None;
@@ -181,14 +181,27 @@ pub fn fit_all(
         base = again(bench, base, &singles, &order, of);
         progress(0.8, &format!("recalibrated: {}", left(&base)));
     }
-    let pairs = pairs(bench, &singles, &guess.findings, of, method, progress);
-    if let Some(pair) = pairs.first() {
+    let mut paired = pairs(bench, &singles, &guess.findings, of, method, progress);
+    if let Some(pair) = paired.first() {
         progress(0.94, "the best effect once more, from what its pair found");
+        let before = best_level(&singles);
         alone(bench, pair, &mut singles, of);
+        if best_level(&singles) < MUCH_BETTER * before {
+            // The pairs began where the effect alone is no longer.
+            paired.extend(pairs(bench, &singles, &guess.findings, of, method, progress));
+            paired.sort_by(|a, b| a.level.total_cmp(&b.level));
+            let mut seen = Vec::new();
+            paired.retain(|pair| {
+                let second = pair.added[1].effect;
+                let new = !seen.contains(&second);
+                seen.push(second);
+                new
+            });
+        }
     }
     progress(0.95, "fitted");
     let findings = guess.findings.clone();
-    Ok(Fits { base: level(bench, base, of), singles, pairs, response, findings })
+    Ok(Fits { base: level(bench, base, of), singles, pairs: paired, response, findings })
 }
 
 /// The base model's optimum from `start`.
@@ -211,6 +224,13 @@ pub(super) fn level(bench: &Bench, fit: Fit, of: &[usize]) -> Hypothesis {
     Hypothesis { added: fit.added.clone(), fit, level, look: bench.look() }
 }
 
+/// Share of its level below which an effect is another start for pairs.
+const MUCH_BETTER: f64 = 0.9;
+
+fn best_level(hypotheses: &[Hypothesis]) -> f64 {
+    hypotheses.iter().map(|h| h.level).fold(f64::INFINITY, f64::min)
+}
+
 /// Indices from the best to the worst.
 pub fn ranked(hypotheses: &[Hypothesis]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..hypotheses.len()).collect();
@@ -230,7 +250,10 @@ pub(super) fn start_effect(
     added.push(choice);
     let coordinates = bench.coordinates(&added);
     let at = base.x.len();
-    let points = starts(bench, &added, &base.x);
+    let mut points = starts(bench, &added, &base.x);
+    if !base.added.is_empty() {
+        points.push(faint(&coordinates, &base.x));
+    }
     let mut tried = (0.0, 0.0);
     let mut best: Option<Fit> = None;
     for (k, x) in points.into_iter().enumerate() {
@@ -258,6 +281,21 @@ pub(super) fn start_effect(
     });
     (approach(bench, fit, of, &NEAR), tried)
 }
+
+/// A second effect that is next to nothing, beside a first one that was fitted without it: a stronger one would have to
+/// take back first what that fit has done in its place.
+fn faint(coordinates: &[Coordinate], x: &[f64]) -> Vec<f64> {
+    let mut point = x.to_vec();
+    point.resize(coordinates.len(), 0.0);
+    point[x.len()] = match coordinates[x.len()].spread {
+        Spread::Log(_) => FAINT,
+        Spread::Absolute(_) => 0.0,
+    };
+    point
+}
+
+/// Its whitened severity.
+const FAINT: f64 = -2.4;
 
 /// Weighted loss of what an effect changes.
 fn caused(bench: &Bench, from: &Fit, to: &Fit) -> f64 {
