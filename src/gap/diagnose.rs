@@ -341,7 +341,7 @@ pub fn verdict(d: &Diagnosis) -> String {
         Kind::None => format!("{opening} No gap that an effect would be needed for (P = {top:.2})."),
         Kind::Named => format!("{opening} The rest is consistent with {names} (P = {top:.2}), which {closing}."),
         Kind::Class => format!(
-            "{opening} The rest is consistent with one of: {}; the data cannot tell which. The likeliest {closing}.",
+            "{opening} The rest is consistent with one or more of: {}; the data cannot tell which. The likeliest {closing}.",
             d.decision.effects.join(", ")
         ),
         Kind::Unknown => format!(

@@ -62,32 +62,10 @@ pub fn first_guess(
     let mut effects = Vec::new();
     let possible = symmetry::possible(&findings);
     for (effect, spec) in bench.specs.iter().enumerate() {
-        if !possible[effect] {
-            effects.push(None);
-            continue;
-        }
         progress(0.05 + 0.01 * effect as f64, &format!("first guess of {}", spec.effect));
         let forms = if method.families { spec.forms.len() } else { 1 };
-        let free = &free;
-        let fits = (0..forms).flat_map(|form| {
-            let added = vec![Choice { effect, form }];
-            let mut points = starts(bench, &added, free);
-            if spec.module == Module::Dynamic {
-                // The free block tells of such an effect, too.
-                let few = points.iter().take(STARTS.len());
-                let ringing: Vec<Vec<f64>> =
-                    few.map(|x| struck(bench, &added, x.clone(), of)).collect();
-                points.extend(ringing);
-            }
-            points.into_iter().map(move |x| evaluate(bench, &added, x, of))
-        });
-        let towards = |fit| approach(bench, fit, of, &FIRST[..1]);
-        let near = best_of(STARTED, fits.collect()).into_iter().map(towards).collect();
-        let arrive = |fit| approach(bench, fit, of, &FIRST[1..]);
-        let ends = best_of(ARRIVING, near).into_iter().map(arrive);
-        let Some(fit) = ends.reduce(Fit::or_better) else { continue };
-        let level = fit.objective / bench.total_weight(of);
-        effects.push(Some((fit.added, fit.x, level)));
+        let guess = possible[effect].then(|| guess_effect(bench, effect, forms, &free, of));
+        effects.push(guess.flatten());
     }
     progress(0.15, "the most promising effects to the end of the first millisecond");
     let base = approach(bench, base, of, &TO_THE_END);
@@ -97,6 +75,37 @@ pub fn first_guess(
         *guess = (fit.added, fit.x, fit.objective / total);
     }
     Ok(Guess { base: base.x, level: base.objective / total, effects, findings })
+}
+
+/// The best of an effect's first `forms` forms on the first millisecond, with the base model's parameters from those of
+/// the `free` block.
+fn guess_effect(
+    bench: &Bench,
+    effect: usize,
+    forms: usize,
+    free: &[f64],
+    of: &[usize],
+) -> Option<FirstGuess> {
+    let dynamic = bench.specs[effect].module == Module::Dynamic;
+    let begin = |form| {
+        let added = vec![Choice { effect, form }];
+        let mut points = starts(bench, &added, free);
+        if dynamic {
+            // The free block tells of such an effect, too.
+            let few = points.iter().take(STARTS.len());
+            let ringing: Vec<Vec<f64>> =
+                few.map(|x| struck(bench, &added, x.clone(), of)).collect();
+            points.extend(ringing);
+        }
+        points.into_iter().map(move |x| evaluate(bench, &added, x, of))
+    };
+    let towards = |fit| approach(bench, fit, of, &FIRST[..1]);
+    let arrive = |fit| approach(bench, fit, of, &FIRST[1..]);
+    let begun = best_of(STARTED, (0..forms).flat_map(begin).collect());
+    let near = best_of(ARRIVING, begun.into_iter().map(towards).collect());
+    let fit = near.into_iter().map(arrive).reduce(Fit::or_better)?;
+    let level = fit.objective / bench.total_weight(of);
+    Some((fit.added, fit.x, level))
 }
 
 /// Guesses from the best to the worst; those without a fit last.
