@@ -336,3 +336,26 @@ fn broyden(jacobian: &DMatrix<f64>, from: &Fit, to: &Fit) -> DMatrix<f64> {
     let miss = change - jacobian * &step;
     jacobian + miss * (step.transpose() / square)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::fit_specs;
+    use crate::gap::problem::Coordinate;
+    use crate::params::{table, Kind};
+
+    /// A run that is refused for its parameters says nothing about an effect.
+    #[test]
+    fn no_fit_leaves_the_range_of_a_parameter() {
+        for param in fit_specs().iter().flat_map(|s| s.forms).flat_map(|form| form.params) {
+            let Kind::Real { min, max, .. } = table::find(param.name).unwrap().kind else {
+                panic!("{}", param.name)
+            };
+            let coordinate =
+                Coordinate { name: param.name, centre: param.centre, spread: param.spread };
+            let ends = [-FARTHEST, FARTHEST].map(|x| coordinate.value(x));
+            let inside = ends.iter().all(|x| (min..=max).contains(x));
+            assert!(inside, "{} goes to {ends:?}, allowed {min} to {max}", param.name);
+        }
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::fit::{self, approach, columns, evaluate, explore, improve, Effort, Fit, View};
 use super::guess::{starts, Guess};
-use super::pairs::{alone, pairs};
+use super::pairs::pairs_and_alone;
 use super::problem::{Bench, Choice, Coordinate, Look};
 use super::symmetry::{self, Finding};
 use crate::effects::Spread;
@@ -54,15 +54,9 @@ pub struct Fits {
 
 /// An effect that the symmetries of the data rule out: the base model with next to none of it.
 fn ruled_out(bench: &Bench, base: &Fit, choice: Choice, of: &[usize]) -> Hypothesis {
-    let mut fit = base.clone();
-    fit.added = vec![choice];
-    fit.x.resize(bench.coordinates(&fit.added).len(), 0.0);
-    fit.x[base.x.len()] = NEXT_TO_NONE;
-    if let Spread::Absolute(_) = bench.coordinates(&fit.added)[base.x.len()].spread {
-        fit.x[base.x.len()] = 0.0;
-    }
-    fit.jacobian = None;
-    level(bench, fit, of)
+    let added = vec![choice];
+    let x = faint(&bench.coordinates(&added), &base.x, NEXT_TO_NONE);
+    level(bench, Fit { added, x, jacobian: None, ..base.clone() }, of)
 }
 
 /// Whitened severity of an effect that is as good as absent.
@@ -181,27 +175,10 @@ pub fn fit_all(
         base = again(bench, base, &singles, &order, of);
         progress(0.8, &format!("recalibrated: {}", left(&base)));
     }
-    let mut paired = pairs(bench, &singles, &guess.findings, of, method, progress);
-    if let Some(pair) = paired.first() {
-        progress(0.94, "the best effect once more, from what its pair found");
-        let before = best_level(&singles);
-        alone(bench, pair, &mut singles, of);
-        if best_level(&singles) < MUCH_BETTER * before {
-            // The pairs began where the effect alone is no longer.
-            paired.extend(pairs(bench, &singles, &guess.findings, of, method, progress));
-            paired.sort_by(|a, b| a.level.total_cmp(&b.level));
-            let mut seen = Vec::new();
-            paired.retain(|pair| {
-                let second = pair.added[1].effect;
-                let new = !seen.contains(&second);
-                seen.push(second);
-                new
-            });
-        }
-    }
+    let pairs = pairs_and_alone(bench, &mut singles, &guess.findings, of, method, progress);
     progress(0.95, "fitted");
     let findings = guess.findings.clone();
-    Ok(Fits { base: level(bench, base, of), singles, pairs: paired, response, findings })
+    Ok(Fits { base: level(bench, base, of), singles, pairs, response, findings })
 }
 
 /// The base model's optimum from `start`.
@@ -222,13 +199,6 @@ pub(super) fn full_jacobian(bench: &Bench, fit: &Fit, of: &[usize]) -> DMatrix<f
 pub(super) fn level(bench: &Bench, fit: Fit, of: &[usize]) -> Hypothesis {
     let level = fit.objective / bench.total_weight(of);
     Hypothesis { added: fit.added.clone(), fit, level, look: bench.look() }
-}
-
-/// Share of its level below which an effect is another start for pairs.
-const MUCH_BETTER: f64 = 0.9;
-
-fn best_level(hypotheses: &[Hypothesis]) -> f64 {
-    hypotheses.iter().map(|h| h.level).fold(f64::INFINITY, f64::min)
 }
 
 /// Indices from the best to the worst.
@@ -252,7 +222,7 @@ pub(super) fn start_effect(
     let at = base.x.len();
     let mut points = starts(bench, &added, &base.x);
     if !base.added.is_empty() {
-        points.push(faint(&coordinates, &base.x));
+        points.push(faint(&coordinates, &base.x, FAINT));
     }
     let mut tried = (0.0, 0.0);
     let mut best: Option<Fit> = None;
@@ -282,19 +252,18 @@ pub(super) fn start_effect(
     (approach(bench, fit, of, &NEAR), tried)
 }
 
-/// A second effect that is next to nothing, beside a first one that was fitted without it: a stronger one would have to
-/// take back first what that fit has done in its place.
-fn faint(coordinates: &[Coordinate], x: &[f64]) -> Vec<f64> {
+/// `x` with an effect that is next to nothing: none where its severity has a sign, else of the whitened `severity`.
+fn faint(coordinates: &[Coordinate], x: &[f64], severity: f64) -> Vec<f64> {
     let mut point = x.to_vec();
     point.resize(coordinates.len(), 0.0);
-    point[x.len()] = match coordinates[x.len()].spread {
-        Spread::Log(_) => FAINT,
-        Spread::Absolute(_) => 0.0,
-    };
+    if let Spread::Log(_) = coordinates[x.len()].spread {
+        point[x.len()] = severity;
+    }
     point
 }
 
-/// Its whitened severity.
+/// Whitened severity at which a second effect begins beside a first one that was fitted without it: a stronger one
+/// would have to take back first what that fit has done in its place.
 const FAINT: f64 = -2.4;
 
 /// Weighted loss of what an effect changes.

@@ -15,6 +15,7 @@ pub const SCHEMA: &str = "tread-block-diagnosis/1";
 
 /// The document.
 pub fn document(d: &Diagnosis) -> Json {
+    let from_defaults = |params: &Params| changes(params, &Params::default());
     let bench = &d.bench;
     let rounded = |x: f64| (x * 1e6).round() / 1e6;
     let best = diagnose::best_cause(&d.weighed);
@@ -60,9 +61,9 @@ pub fn document(d: &Diagnosis) -> Json {
             "expected_gain_nats": e.gain,
         })).collect::<Vec<_>>(),
         "models": {
-            "nominal": changes(&nominal(&bench.plan)),
-            "recalibrated": changes(&bench.params(&[], &d.fits.base.fit.x)),
-            "with-effect": changes(&params_of(d, &best)),
+            "nominal": from_defaults(&nominal(&bench.plan)),
+            "recalibrated": from_defaults(&bench.params(&[], &d.fits.base.fit.x)),
+            "with-effect": from_defaults(&params_of(d, &best)),
             "with-effect_effects": decide::names(bench, &d.fits, &best),
         },
         "recalibration": parameters(d, &Cause::None),
@@ -141,13 +142,12 @@ fn unit(name: &str) -> &'static str {
     }
 }
 
-/// Parameters that differ from the model's defaults, by dotted name.
-fn changes(params: &Params) -> Json {
-    let plain = Params::default();
+/// Parameters that differ from those of `plain`, by dotted name.
+pub(super) fn changes(params: &Params, plain: &Params) -> Json {
     let mut out = Map::new();
     for spec in table::specs() {
         let value = (spec.get)(params);
-        if value != (spec.get)(&plain) {
+        if value != (spec.get)(plain) {
             let value = match value {
                 Value::Real(x) => json!(x),
                 Value::Integer(_) if matches!(spec.kind, Kind::Enumeration { .. }) => {
@@ -200,7 +200,7 @@ mod tests {
         params.friction.form = crate::params::FrictionForm::Rational;
         params.effect.friction_ageing.enabled = true;
         params.effect.friction_ageing.form = crate::effects::friction_ageing::Form::Saturating;
-        let written = changes(&params);
+        let written = changes(&params, &Params::default());
         let lines = to_toml(written.as_object().expect("a table"));
         assert_eq!(crate::params::load::from_toml(&lines).expect("readable"), params);
     }

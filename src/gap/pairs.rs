@@ -10,9 +10,46 @@ const LITTLE: f64 = 1.2;
 /// Pairs that are kept.
 const PAIRED: usize = 3;
 
+/// Share of its level below which an effect is another start for pairs.
+const MUCH_BETTER: f64 = 0.9;
+
+/// Pairs of the best effect, the best first; that effect alone once more from its best pair; and where this made it much
+/// better, the pairs once more, because they began where it is no longer.
+pub(super) fn pairs_and_alone(
+    bench: &Bench,
+    singles: &mut [Hypothesis],
+    findings: &[Finding],
+    of: &[usize],
+    method: Method,
+    progress: &(dyn Fn(f64, &str) + Sync),
+) -> Vec<Hypothesis> {
+    let mut found = pairs(bench, singles, findings, of, method, progress);
+    let Some(pair) = found.first() else { return found };
+    progress(0.94, "the best effect once more, from what its pair found");
+    let before = best_level(singles);
+    alone(bench, pair, singles, of);
+    if best_level(singles) < MUCH_BETTER * before {
+        let again = |_: f64, what: &str| progress(0.94, what);
+        found.extend(pairs(bench, singles, findings, of, method, &again));
+        found.sort_by(|a, b| a.level.total_cmp(&b.level));
+        let mut seen = Vec::new();
+        found.retain(|pair| {
+            let second = pair.added[1].effect;
+            let new = !seen.contains(&second);
+            seen.push(second);
+            new
+        });
+    }
+    found
+}
+
+fn best_level(hypotheses: &[Hypothesis]) -> f64 {
+    hypotheses.iter().map(|h| h.level).fold(f64::INFINITY, f64::min)
+}
+
 /// The first effect of a pair from where the pair has left the block: a pair must not take credit
 /// for an optimum that its first effect alone has missed.
-pub(super) fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis], of: &[usize]) {
+fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis], of: &[usize]) {
     let added = vec![pair.added[0]];
     let x = pair.fit.x[..bench.coordinates(&added).len()].to_vec();
     let fit = approach(bench, evaluate(bench, &added, x, of), of, &FINE);
@@ -23,7 +60,7 @@ pub(super) fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis]
 
 /// The best effect with every other that the symmetries allow beside it, then once more the best
 /// of these pairs.
-pub(super) fn pairs(
+fn pairs(
     bench: &Bench,
     singles: &[Hypothesis],
     findings: &[Finding],

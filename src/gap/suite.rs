@@ -6,12 +6,12 @@
 
 use super::campaign::{self, Plan, Record, CHANNELS};
 use super::fit::Noise;
+use super::json::changes;
 use super::predict;
 use super::problem::Coordinate;
 use super::simulate::{nominal, set, Simulator, DATASHEET, FINE};
 use crate::effects::{fit_specs, Spread};
 use crate::error::Fault;
-use crate::params::table::{self, ParamSpec, Value};
 use crate::params::Params;
 use rayon::prelude::*;
 use serde_json::{json, Map, Value as Json};
@@ -92,7 +92,7 @@ fn one(
     let truth = truth(number);
     let severity = SEVERITY[0] + (SEVERITY[1] - SEVERITY[0]) * noise.uniform();
     let mut label = add(truth, severity, &mut params, &mut noise);
-    label["parameters"] = told(&params, &nominal(&plan));
+    label["parameters"] = changes(&params, &nominal(&plan));
     let simulator = Simulator::cut(&plan, FINE)?;
     let folder = out.join(&id);
     for spec in &plan.runs {
@@ -153,24 +153,6 @@ fn add(truth: Truth, severity: f64, params: &mut Params, noise: &mut Noise) -> J
     let values: Vec<f64> = spec.forms[form].params.iter().enumerate().map(at).collect();
     spec.apply(form, &values, params);
     json!({"effects": [spec.effect], "severity": 1.0 + severity, "form": spec.forms[form].name})
-}
-
-/// The parameters in which `params` differs from the datasheet, by their dotted names, SI.
-fn told(params: &Params, datasheet: &Params) -> Json {
-    let differing = table::specs().filter_map(|spec| {
-        let value = (spec.get)(params);
-        (value != (spec.get)(datasheet)).then(|| (spec.name.to_string(), json(spec, &value)))
-    });
-    Json::Object(differing.collect())
-}
-
-/// A value as TOML and JSON have it: numbers as such, items of an enumeration by name.
-fn json(spec: &ParamSpec, value: &Value) -> Json {
-    match value {
-        Value::Real(x) => json!(x),
-        Value::Boolean(on) => json!(on),
-        _ => json!(table::show(spec, value)),
-    }
 }
 
 /// What is wrong with the measurement itself.
