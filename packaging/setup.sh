@@ -54,8 +54,9 @@ pip_install() {
 
 has_libclang() {
     [ -n "${LIBCLANG_PATH:-}" ] && return
-    ldconfig -p 2>/dev/null | grep -q 'libclang[-.0-9]*\.so' && return
-    ls /usr/lib/llvm-*/lib/libclang*.so* >/dev/null 2>&1
+    ldconfig -p 2>/dev/null | grep -qE 'libclang(-[0-9.]+)?\.so' && return
+    # Not libclang-cpp, which is another library: compilers bring it alone.
+    compgen -G '/usr/lib/llvm-*/lib/libclang.so*' >/dev/null || compgen -G '/usr/lib/llvm-*/lib/libclang-[0-9]*.so*' >/dev/null
 }
 
 libclang() {
