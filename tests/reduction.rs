@@ -26,7 +26,7 @@ fn both(params: &Params) -> (FullModel, Reduction) {
 /// Every mode kept: the reduction is then a change of basis.
 fn unreduced(mesh: Mesh) -> (FullModel, Reduction) {
     let full = assemble(&mesh, POISSON, Plane::Stress);
-    let reduction = Reduction::of_block(mesh, POISSON, Plane::Stress, f64::INFINITY).unwrap();
+    let reduction = Reduction::of_block(mesh, None, POISSON, Plane::Stress, f64::INFINITY).unwrap();
     assert_eq!(reduction.modes(), full.dofs(), "no mode may be missing");
     (full, reduction)
 }

@@ -86,7 +86,7 @@ impl Scaled {
         let phi = &reduction.contact_modes;
         Self {
             omega2: reduction.lambda.iter().map(|l| l * e_over_rho).collect(),
-            area: reduction.weights.iter().map(|w| w * params.block.width).collect(),
+            area: reduction.interface.weights.iter().map(|w| w * params.block.width).collect(),
             gamma: reduction.coupling[1].iter().map(|g| g * scale).collect(),
             phi_x: DMatrix::from_fn(nodes, modes, |i, m| phi[(i, m)] / scale),
             phi_z: DMatrix::from_fn(nodes, modes, |i, m| phi[(nodes + i, m)] / scale),

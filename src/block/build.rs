@@ -9,11 +9,17 @@ use crate::mesh::Mesh;
 use crate::params::{FrictionForm, Params, Plane};
 use crate::reduction::Reduction;
 
-/// Elements along the face of a block of [`REFERENCE_LENGTH`], unless given; of others as the cube
-/// root of their length, since the edges need the resolution. Measured against the independent
-/// solutions: see the convergence table in the book.
+/// Contact points of a block of [`REFERENCE_LENGTH`], unless given, less one; of others as the root of their
+/// length: between Gauss-Lobatto points at the edges, which need the resolution, the distance then is the
+/// same. See the convergence table in the book.
+const DEGREE: f64 = 12.0;
+/// Fewest contact points of that choice.
+const LEAST_POINTS: usize = 9;
+/// Elements along the face of a block of [`REFERENCE_LENGTH`], unless given; of others as the root of their length.
 const ELEMENTS_ALONG: f64 = 10.0;
-/// Length that [`ELEMENTS_ALONG`] holds for \[m\].
+/// Elements along the face where its nodes are the contact points; of others as the cube root of their length.
+const ELEMENTS_OF_NODES: f64 = 10.0;
+/// Length that these hold for \[m\].
 const REFERENCE_LENGTH: f64 = 15e-3;
 /// Height of an element \[m\], unless given.
 const ELEMENT_HEIGHT: f64 = 1.5e-3;
@@ -27,6 +33,8 @@ pub struct Shape {
     pub height: f64,
     /// Elements along the face and up.
     pub elements: (usize, usize),
+    /// Contact points, `None` for the nodes of the mesh.
+    pub points: Option<usize>,
     /// Poisson's ratio \[-\].
     pub poisson_ratio: f64,
     /// Plane stress or strain.
@@ -43,7 +51,12 @@ impl Shape {
             0 => (wanted.round() as usize).max(least),
             given => given,
         };
-        let along = ELEMENTS_ALONG * (block.length / REFERENCE_LENGTH).cbrt();
+        let size = block.length / REFERENCE_LENGTH;
+        let points = Self::points(params, size);
+        let along = match points {
+            None => ELEMENTS_OF_NODES * size.cbrt(),
+            Some(points) => (ELEMENTS_ALONG * size.sqrt()).max(0.5 * points as f64),
+        };
         let omega = std::f64::consts::TAU * solver.frequency_bound;
         Self {
             length: block.length,
@@ -52,9 +65,24 @@ impl Shape {
                 count(solver.elements_along, along, 4),
                 count(solver.elements_up, block.height / ELEMENT_HEIGHT, 3),
             ),
+            points,
             poisson_ratio: rubber.poisson_ratio,
             plane: rubber.plane,
             bound: omega * omega * rubber.density / rubber.young_modulus,
+        }
+    }
+
+    /// Contact points: as many as were asked for, or chosen from the length over [`REFERENCE_LENGTH`]. Who
+    /// chooses the elements means their nodes, and a texture wants points as dense in the middle of the face as
+    /// at its edges.
+    fn points(params: &Params, size: f64) -> Option<usize> {
+        let nodes =
+            params.solver.elements_along > 0 || params.effect.road_texture.texture().is_some();
+        match params.solver.contact_points {
+            0 if nodes => None,
+            0 => Some(((DEGREE * size.sqrt()).round() as usize + 1).max(LEAST_POINTS)),
+            1 => None,
+            points => Some(points),
         }
     }
 
@@ -65,7 +93,7 @@ impl Shape {
     pub fn reduce(&self) -> Result<Reduction, Fault> {
         let (along, up) = self.elements;
         let mesh = Mesh::block(self.length, self.height, along, up);
-        Reduction::of_block(mesh, self.poisson_ratio, self.plane, self.bound)
+        Reduction::of_block(mesh, self.points, self.poisson_ratio, self.plane, self.bound)
     }
 }
 
@@ -83,7 +111,8 @@ pub(super) fn face(reduction: &Reduction, params: &Params) -> Result<Face, Fault
         FrictionForm::Table => Some(read_table(&params.friction.table_file)?),
         _ => None,
     };
-    let area: Vec<f64> = reduction.weights.iter().map(|w| w * params.block.width).collect();
+    let area: Vec<f64> =
+        reduction.interface.weights.iter().map(|w| w * params.block.width).collect();
     let law = Law::new(&params.friction, table.as_ref());
     let (adhesion, effect) = (&params.effect.adhesion, &params.effect);
     let (damping, viscosity) = effect.contact_damping.coefficients();
@@ -101,7 +130,7 @@ pub(super) fn face(reduction: &Reduction, params: &Params) -> Result<Face, Fault
 
 /// How far each contact node lies behind the plane of the road when the face just touches \[m\].
 fn profile(reduction: &Reduction, params: &Params) -> Vec<f64> {
-    let x = &reduction.mesh.x;
+    let x = &reduction.interface.x;
     let (tilt, edge) = (&params.effect.misalignment, &params.effect.worn_edge);
     x.iter().map(|at| tilt.gap(*at) + edge.depth(at - x[0])).collect()
 }

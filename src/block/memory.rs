@@ -72,14 +72,14 @@ impl Memory {
         let traction = &stage.traction;
         let (thermal, ageing) = (&effects.thermal_friction, &effects.friction_ageing);
         if thermal.enabled {
-            thermal.warm(h, &stage.slip, &traction.tangential, &face.area, &mut self.rise);
+            thermal.warm(h, &stage.placed.slip, &traction.tangential, &face.area, &mut self.rise);
         }
         if ageing.enabled {
-            ageing.age(h, &stage.slip, &mut self.age);
+            ageing.age(h, &stage.placed.slip, &mut self.age);
         }
         self.set_friction(effects, state);
         if ageing.is_added() {
-            let slip = self.age.iter().zip(&stage.slip).zip(&mut state.friction_factor);
+            let slip = self.age.iter().zip(&stage.placed.slip).zip(&mut state.friction_factor);
             for ((age, v), factor) in slip {
                 let level = face.friction.level(self.pressure, *v, face.smoothing_speed);
                 *factor *= ageing.added(*age, level);

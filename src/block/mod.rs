@@ -63,7 +63,7 @@ impl TreadBlock {
         let memory = Memory::new(params, &linear, &face.area);
         let mut block = Self {
             state: State::new(&linear),
-            stations: Stations::along(&reduction.mesh),
+            stations: Stations::along(&reduction.interface.x),
             params: params.clone(),
             reduction,
             linear,
@@ -259,12 +259,16 @@ fn wear_off(
     stage: &Stage,
     worn: &mut [f64],
 ) -> [f64; 2] {
+    if law.coefficient == 0.0 {
+        return [0.0; 2];
+    }
     let traction = &stage.traction;
     let (mut mass, mut energy) = (0.0, 0.0);
     for i in 0..worn.len() {
         if traction.pressure[i] > 0.0 {
             let mu = traction.tangential[i] / (traction.pressure[i] * area[i]);
-            let depth = h * wear::depth_rate(law, density, mu, traction.pressure[i], stage.slip[i]);
+            let depth =
+                h * wear::depth_rate(law, density, mu, traction.pressure[i], stage.placed.slip[i]);
             worn[i] += depth;
             mass += depth * density * area[i];
             energy += depth * traction.pressure[i] * area[i];

@@ -2,10 +2,9 @@
 
 use super::signals::{Outputs, STATIONS};
 use super::TreadBlock;
-use crate::contact::{face::padded, Traction};
+use crate::contact::{face::padded, Placed, Traction};
 use crate::dynamics::tr_bdf2::contact_motion;
 use crate::dynamics::{Kinematics, Linear, State};
-use crate::mesh::Mesh;
 use crate::pack::Aligned;
 
 /// Quadratic interpolation from contact nodes to equidistant stations, with buffers.
@@ -16,47 +15,53 @@ pub(super) struct Stations {
     traction: Traction,
     u: Aligned,
     v: Aligned,
-    compression: Aligned,
-    slip: Aligned,
-    lift: Aligned,
+    placed: Placed,
 }
 
 impl Stations {
-    /// Stations along the tread face of `mesh`.
-    pub(super) fn along(mesh: &Mesh) -> Self {
-        let nodes = mesh.x.len();
+    /// Stations along a tread face with contact points at `points` \[m\].
+    pub(super) fn along(points: &[f64]) -> Self {
+        let nodes = points.len();
         let stride = padded(nodes);
-        let (first, last) = (mesh.x[0], mesh.x[nodes - 1]);
+        let (first, last) = (points[0], points[nodes - 1]);
         let place = |k: usize| {
             let x = first + (last - first) * k as f64 / (STATIONS - 1) as f64;
-            let element = (1..mesh.elements().0).take_while(|e| mesh.x[2 * e] <= x).count();
-            let (left, right) = (mesh.x[2 * element], mesh.x[2 * element + 2]);
-            let xi = 2.0 * (x - left) / (right - left) - 1.0;
-            (2 * element, [0.5 * xi * (xi - 1.0), 1.0 - xi * xi, 0.5 * xi * (xi + 1.0)])
+            // Points in threes, as the nodes of quadratic elements; the last three may overlap.
+            let before = (1..nodes / 2).take_while(|e| points[2 * e] <= x).count();
+            let start = (2 * before).min(nodes.saturating_sub(3));
+            (start, parabola(&points[start..], x))
         };
         Self {
             places: (0..STATIONS).map(place).collect(),
             traction: Traction::new(nodes),
             u: Aligned::zeros(2 * stride),
             v: Aligned::zeros(2 * stride),
-            compression: Aligned::zeros(stride),
-            slip: Aligned::zeros(stride),
-            lift: Aligned::zeros(stride),
+            placed: Placed::new(nodes),
         }
     }
 
     fn at(&self, values: &[f64]) -> [f64; STATIONS] {
         std::array::from_fn(|k| {
-            let (node, [a, b, c]) = self.places[k];
-            a * values[node] + b * values[node + 1] + c * values[node + 2]
+            let (node, weights) = self.places[k];
+            weights.iter().zip(&values[node..]).map(|(weight, value)| weight * value).sum()
         })
     }
+}
+
+/// Weights at `x` of the first three `points` in the parabola through them, or of two in the line.
+fn parabola(points: &[f64], x: f64) -> [f64; 3] {
+    let points = &points[..points.len().min(3)];
+    std::array::from_fn(|i| {
+        let Some(own) = points.get(i) else { return 0.0 };
+        let others = points.iter().enumerate().filter(|(j, _)| *j != i);
+        others.map(|(_, other)| (x - other) / (own - other)).product()
+    })
 }
 
 impl TreadBlock {
     /// Compression of the contact nodes \[m\] as the state stands.
     pub(super) fn compression(&self) -> Vec<f64> {
-        self.stations.compression.to_vec()
+        self.stations.placed.compression.to_vec()
     }
 
     /// Displacements \[m\] of all mesh nodes relative to the clamped face, block frame: x and z per
@@ -91,9 +96,10 @@ impl TreadBlock {
         } else {
             0.0
         };
-        out.friction_power = t.tangential.iter().zip(&stations.slip).map(|(f, v)| -f * v).sum();
+        out.friction_power =
+            t.tangential.iter().zip(&stations.placed.slip).map(|(f, v)| -f * v).sum();
         out.pressure = stations.at(&t.pressure).map(|p| p.max(0.0));
-        out.sliding_speed = stations.at(&stations.slip);
+        out.sliding_speed = stations.at(&stations.placed.slip);
         shares(&self.face.area, stations, self.params.friction.smoothing_speed, out);
         out.wear_mass = self.wear_mass;
         out.wear_depth_max = self.state.worn.iter().copied().fold(0.0, f64::max);
@@ -114,16 +120,16 @@ impl TreadBlock {
             let (x, z) = (linear.node_x[i] + st.u[i], linear.node_z + st.u[stride + i]);
             let (vx, vz) = (st.v[i], st.v[stride + i]);
             let (along, up) = (cos * x - sin * z, sin * x + cos * z);
-            st.compression[i] =
+            st.placed.compression[i] =
                 -(motion.position[1] + up) - self.face.profile[i] - self.state.worn[i];
             if let Some(road) = &self.face.road {
-                st.compression[i] += road.height(motion.position[0] + along);
+                st.placed.compression[i] += road.height(motion.position[0] + along);
             }
-            st.slip[i] = motion.velocity[0] + cos * vx - sin * vz - motion.omega * up;
-            st.lift[i] = motion.velocity[1] + sin * vx + cos * vz + motion.omega * along;
+            st.placed.slip[i] = motion.velocity[0] + cos * vx - sin * vz - motion.omega * up;
+            st.placed.lift[i] = motion.velocity[1] + sin * vx + cos * vz + motion.omega * along;
         }
         let factor = &self.state.friction_factor;
-        self.face.tractions(&st.compression, &st.slip, &st.lift, factor, &mut st.traction);
+        self.face.evaluate(0.0, &st.placed, factor, &mut st.traction);
     }
 
     /// Force and moment on the belt: contact forces less what accelerates the block.
@@ -175,7 +181,7 @@ fn free_the_face(linear: &Linear, state: &State, motion: &mut Kinematics) {
 fn shares(area: &[f64], stations: &Stations, smoothing_speed: f64, out: &mut Outputs) {
     let total: f64 = area.iter().sum();
     let (mut touching, mut sticking) = (0.0, 0.0);
-    for ((a, p), v) in area.iter().zip(&stations.traction.pressure).zip(&stations.slip) {
+    for ((a, p), v) in area.iter().zip(&stations.traction.pressure).zip(&stations.placed.slip) {
         if *p > 0.0 {
             touching += a;
             if v.abs() < smoothing_speed {

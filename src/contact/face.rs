@@ -56,6 +56,25 @@ pub struct Traction {
     pub pressure: Aligned,
 }
 
+/// Where the contact nodes stand and how they move, as the laws of the face see it; padded.
+#[derive(Clone, Debug, Default)]
+pub struct Placed {
+    /// Compression \[m\].
+    pub compression: Aligned,
+    /// Speed over the road \[m/s\].
+    pub slip: Aligned,
+    /// Speed away from the road \[m/s\].
+    pub lift: Aligned,
+}
+
+impl Placed {
+    /// Room for `nodes` contact nodes.
+    pub fn new(nodes: usize) -> Self {
+        let zeros = || Aligned::zeros(padded(nodes));
+        Self { compression: zeros(), slip: zeros(), lift: zeros() }
+    }
+}
+
 /// How the normal force of each node changes with its compression and approach speed, padded.
 #[derive(Clone, Debug, Default)]
 pub struct NormalSlopes {
@@ -119,58 +138,49 @@ impl Face {
         NormalSlopes { stiffness: each(slope), damping: each(damping) }
     }
 
-    /// Evaluates all nodes into `out`; returns the highest pressure \[Pa\]. All slices are padded.
+    /// Evaluates all nodes into `out`; returns the highest pressure \[Pa\].
     ///
-    /// `compression` \[m\] and its change per normal speed −`a` \[s\], `slip` and `lift` the speeds over
-    /// and away from the road \[m/s\], `factor` what effects make of friction \[-\].
+    /// The compression changes by −`a` \[s\] per normal speed; `factor` is what effects make of friction \[-\].
+    pub fn evaluate(&self, a: f64, at: &Placed, factor: &Aligned, out: &mut Traction) -> f64 {
+        evaluate_now(self, a, at, factor, out)
+    }
+
+    /// [`Self::evaluate`], compiled for the instruction set of its caller.
     #[inline(always)]
-    pub fn evaluate(
-        &self,
-        compression: &[f64],
-        a: f64,
-        slip: &[f64],
-        lift: &[f64],
-        factor: &[f64],
-        out: &mut Traction,
-    ) -> f64 {
+    fn all_nodes(&self, a: f64, at: &Placed, factor: &Aligned, out: &mut Traction) -> f64 {
+        let area = self.area.packs();
+        let n = area.len();
+        let factor = &factor.packs()[..n];
+        let compression = &at.compression.packs()[..n];
+        let (slip, lift) = (&at.slip.packs()[..n], &at.lift.packs()[..n]);
+        let tangential = &mut out.tangential.packs_mut()[..n];
+        let normal = &mut out.normal.packs_mut()[..n];
+        let slip_slope = &mut out.slip_slope.packs_mut()[..n];
+        let coupling = &mut out.coupling.packs_mut()[..n];
+        let approach_slope = &mut out.approach_slope.packs_mut()[..n];
+        let pressure = &mut out.pressure.packs_mut()[..n];
         let mut highest = Pack::splat(0.0);
-        for at in (0..self.area.len()).step_by(LANES) {
-            let read = |values: &[f64]| Pack::read(&values[at..at + LANES]);
-            let (slip, factor, area) = (read(slip), read(factor), read(&self.area));
-            let (p, p_by_lift) = self.pressure(read(compression), a, read(lift));
-            let mu = self.friction.mu(p, slip);
-            let value = factor * mu.value;
-            let by_pressure = value + p * factor * mu.by_pressure;
+        for k in 0..n {
+            let (p, p_by_lift) = self.pressure(compression[k], a, lift[k]);
+            let mu = self.friction.mu(p, slip[k]);
+            let value = factor[k] * mu.value;
             let mut t = Nodes {
                 tangential: -(value * p),
-                slip_slope: factor * mu.by_speed * p,
-                coupling: by_pressure * p_by_lift,
+                slip_slope: factor[k] * mu.by_speed * p,
+                coupling: factor[k].mul_add(mu.by_log_pressure, value) * p_by_lift,
                 normal: p,
                 approach_slope: -p_by_lift,
             };
-            self.adhere(p, p_by_lift, slip, &mut t);
-            let write = |to: &mut [f64], values: Pack| (values * area).write(&mut to[at..]);
-            write(&mut out.tangential, t.tangential);
-            write(&mut out.slip_slope, t.slip_slope);
-            write(&mut out.coupling, t.coupling);
-            write(&mut out.normal, t.normal);
-            write(&mut out.approach_slope, t.approach_slope);
-            p.write(&mut out.pressure[at..]);
+            self.adhere(p, p_by_lift, slip[k], &mut t);
+            tangential[k] = t.tangential * area[k];
+            normal[k] = t.normal * area[k];
+            slip_slope[k] = t.slip_slope * area[k];
+            coupling[k] = t.coupling * area[k];
+            approach_slope[k] = t.approach_slope * area[k];
+            pressure[k] = p;
             highest = highest.max(p);
         }
-        highest.0.iter().copied().fold(0.0, f64::max)
-    }
-
-    /// [`Self::evaluate`] for the instruction set at hand.
-    pub fn tractions(
-        &self,
-        compression: &[f64],
-        slip: &[f64],
-        lift: &[f64],
-        factor: &[f64],
-        out: &mut Traction,
-    ) {
-        evaluate_now(self, compression, slip, lift, factor, out);
+        highest.largest()
     }
 
     /// Pressure \[Pa\] and its derivative by the speed away from the road \[Pa s/m\].
@@ -236,19 +246,13 @@ impl Face {
     }
 }
 
+/// On its own, so that the laws are compiled once per instruction set and not with every kernel that calls them.
 #[multiversion(targets(
     "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn evaluate_now(
-    face: &Face,
-    compression: &[f64],
-    slip: &[f64],
-    lift: &[f64],
-    factor: &[f64],
-    out: &mut Traction,
-) {
-    face.evaluate(compression, 0.0, slip, lift, factor, out);
+fn evaluate_now(face: &Face, a: f64, at: &Placed, factor: &Aligned, out: &mut Traction) -> f64 {
+    face.all_nodes(a, at, factor, out)
 }
 
 /// Stresses of eight nodes and their slopes, see [`Traction`].

@@ -15,8 +15,8 @@ pub struct Mu {
     pub value: Pack,
     /// ∂μ/∂v \[s/m\].
     pub by_speed: Pack,
-    /// ∂μ/∂p \[1/Pa\].
-    pub by_pressure: Pack,
+    /// p·∂μ/∂p \[-\].
+    pub by_log_pressure: Pack,
 }
 
 /// A friction characteristic.
@@ -27,7 +27,7 @@ pub trait FrictionLaw {
     /// Coefficient, ∂μ/∂v and ∂μ/∂p at one point.
     fn at(&self, p: f64, v: f64) -> [f64; 3] {
         let mu = self.mu(Pack::splat(p), Pack::splat(v));
-        [mu.value.0[0], mu.by_speed.0[0], mu.by_pressure.0[0]]
+        [mu.value.0[0], mu.by_speed.0[0], mu.by_log_pressure.0[0] / p]
     }
 
     /// Coefficient before its sign is smoothed over `smoothing_speed` \[m/s\], at one point; not
@@ -117,25 +117,23 @@ impl Common {
         }
     }
 
-    /// `fall` is the falling part in \[0, 1\], `speed_slope` is |v|·d fall/d|v| (finite at v = 0).
+    /// `fall` is the falling part in \[0, 1\], `slope` its derivative by |v| \[s/m\].
     #[inline(always)]
-    fn mu(&self, p: Pack, v: Pack, fall: Pack, speed_slope: Pack) -> Mu {
+    fn mu(&self, p: Pack, v: Pack, fall: Pack, slope: Pack) -> Mu {
         let splat = Pack::splat;
-        let (sign, slope) = smoothed_sign(v, self.smoothing_speed);
-        let least = splat(MIN_PRESSURE);
-        let bounded = p.max(least);
-        let by_p = (bounded * splat(1.0 / self.reference_pressure)).powf(self.pressure_exponent);
+        let (sign, sign_slope) = smoothed_sign(v, self.smoothing_speed);
         let level = fall.mul_add(splat(self.mu_drop), splat(self.mu_inf));
-        // sign · d level/d|v| · d|v|/dv = (sign/v) · |v| d level/d|v|; sign/v → slope as v → 0.
-        let tiny = splat(1e-12);
-        let sign_over_v = v.abs().if_above(tiny, sign / v, slope);
-        let value = by_p * sign * level;
-        let relative = value * splat(self.pressure_exponent) / bounded;
-        Mu {
-            value,
-            by_speed: by_p * (slope * level + sign_over_v * splat(self.mu_drop) * speed_slope),
-            by_pressure: p.if_above(least, relative, splat(0.0)),
+        let falling = sign.abs() * splat(self.mu_drop) * slope;
+        let (value, by_speed) = (sign * level, sign_slope.mul_add(level, falling));
+        if self.pressure_exponent == 0.0 {
+            return Mu { value, by_speed, by_log_pressure: splat(0.0) };
         }
+        let least = splat(MIN_PRESSURE);
+        let ratio = p.max(least) * splat(1.0 / self.reference_pressure);
+        let by_p = ratio.powf(self.pressure_exponent);
+        let value = by_p * value;
+        let by_log_pressure = p.if_above(least, value * splat(self.pressure_exponent), splat(0.0));
+        Mu { value, by_speed: by_p * by_speed, by_log_pressure }
     }
 }
 
@@ -162,13 +160,24 @@ impl FrictionLaw for Exponential {
     }
 }
 
-/// exp(−(|v|/`speed`)^`exponent`) and |v| times its derivative by |v|.
+/// exp(−(|v|/`speed`)^`exponent`) and its derivative by |v| \[s/m\].
 #[inline(always)]
 fn stretched(v: Pack, speed: f64, exponent: f64) -> (Pack, Pack) {
     let ratio = v.abs() * Pack::splat(1.0 / speed);
-    let power = if exponent == 1.0 { ratio } else { power(ratio, exponent) };
+    if exponent == 1.0 {
+        let fall = (-ratio).exp();
+        return (fall, fall * Pack::splat(-1.0 / speed));
+    }
+    let power = power(ratio, exponent);
     let fall = (-power).exp();
-    (fall, -(Pack::splat(exponent) * power * fall))
+    (fall, by_speed(v, Pack::splat(-exponent) * power * fall))
+}
+
+/// A derivative by |v| from the one by ln |v|; below 10⁻¹² m/s, where the smoothed sign makes nothing of a
+/// steep one, that of 10⁻¹² m/s.
+#[inline(always)]
+fn by_speed(v: Pack, by_log_speed: Pack) -> Pack {
+    by_log_speed / v.abs().max(Pack::splat(1e-12))
 }
 
 /// Two exponentials: fall = (1 − s) exp(−(|v|/v_d)^γ) + s exp(−(|v|/v_s)^γ_s), each a fall around a speed
@@ -212,7 +221,8 @@ impl FrictionLaw for Rational {
         let ratio = v.abs() * Pack::splat(1.0 / self.common.decay_speed);
         let power = power(ratio, self.exponent);
         let fall = Pack::splat(1.0) / (power + Pack::splat(1.0));
-        self.common.mu(p, v, fall, -(Pack::splat(self.exponent) * power * fall * fall))
+        let slope = Pack::splat(-self.exponent) * power * fall * fall;
+        self.common.mu(p, v, fall, by_speed(v, slope))
     }
 }
 
@@ -231,7 +241,7 @@ impl FrictionLaw for LogBell {
         let scaled = decades * Pack::splat(self.steepness);
         let fall = (-(scaled * scaled)).exp();
         let slope = scaled * fall * Pack::splat(-2.0 * self.steepness / LN_10);
-        self.common.mu(p, v, fall, slope)
+        self.common.mu(p, v, fall, by_speed(v, slope))
     }
 }
 

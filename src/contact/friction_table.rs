@@ -124,11 +124,10 @@ impl FrictionLaw for Table {
             (level[0][i], level[1][i], level[2][i]) = (value, by_pressure, by_log_v);
         }
         let [level, by_pressure, by_log_v] = level.map(Pack);
-        let sign_over_v = v.abs().if_above(tiny, sign / v, slope);
         Mu {
             value: sign * level,
-            by_speed: slope * level + sign_over_v * by_log_v,
-            by_pressure: sign * by_pressure,
+            by_speed: slope * level + sign.abs() * by_log_v / v.abs().max(tiny),
+            by_log_pressure: sign * by_pressure * p,
         }
     }
 }

@@ -1,54 +1,66 @@
 //! Dense kernels on plain slices: no allocation, fixed order of summation, shapes that vectorise.
 
-use crate::pack::{Pack, LANES};
+use crate::pack::Pack;
 
-/// `out` += Σⱼ `columns`ⱼ xⱼ; `columns` holds column j at `j * out.len()`; `out` is full packs.
+/// `out` = Σⱼ `columns`ⱼ xⱼ; `columns` holds column j at `j * out.len()` packs.
 #[inline(always)]
-pub fn add_columns(out: &mut [f64], columns: &[f64], x: &[f64]) {
-    add_lower_columns(out, columns, x, 0);
+pub fn multiply(out: &mut [Pack], columns: &[Pack], x: &[f64]) {
+    out.fill(Pack::default());
+    add_columns(out, columns, x, out.len(), 0);
 }
 
-/// [`add_columns`] of the lower part of longer columns, from number `start` on.
+/// `out` += Σⱼ `columns`ⱼ xⱼ, where `out` stands for the packs from number `start` on of columns that are
+/// `height` packs high.
 #[inline(always)]
-pub fn add_lower_columns(out: &mut [f64], columns: &[f64], x: &[f64], start: usize) {
-    let rows = (start + out.len()) / LANES;
-    let columns = columns.as_chunks().0;
-    let (mut at, mut rest) = (start / LANES, &mut *out.as_chunks_mut().0);
-    while !rest.is_empty() {
+pub fn add_columns(out: &mut [Pack], columns: &[Pack], x: &[f64], height: usize, start: usize) {
+    let mut at = 0;
+    while at < out.len() {
         // As many rows at a time as registers hold while all columns pass.
-        let count = match rest.len() {
-            1 => add_rows::<1>(rest, columns, x, rows, at),
-            2 => add_rows::<2>(rest, columns, x, rows, at),
-            3 => add_rows::<3>(rest, columns, x, rows, at),
-            5 => add_rows::<5>(rest, columns, x, rows, at),
-            6 => add_rows::<6>(rest, columns, x, rows, at),
-            _ => add_rows::<4>(rest, columns, x, rows, at),
+        at += match out.len() - at {
+            1 => add_rows::<1>(out, at, columns, x, height, start),
+            2 => add_rows::<2>(out, at, columns, x, height, start),
+            3 => add_rows::<3>(out, at, columns, x, height, start),
+            5 => add_rows::<3>(out, at, columns, x, height, start),
+            6 => add_rows::<3>(out, at, columns, x, height, start),
+            _ => add_rows::<4>(out, at, columns, x, height, start),
         };
-        at += count;
-        rest = &mut rest[count..];
     }
 }
 
-/// [`add_columns`] for the first `N` packs of `out`, which are packs `at` and on of `rows` in a column.
+/// [`add_columns`] for the `N` packs of `out` from number `at` on; returns `N`.
+///
+/// Columns go to two sums in turn, so that a product need not wait for the one before.
 #[inline(always)]
 fn add_rows<const N: usize>(
-    out: &mut [[f64; LANES]],
-    columns: &[[f64; LANES]],
-    x: &[f64],
-    rows: usize,
+    out: &mut [Pack],
     at: usize,
+    columns: &[Pack],
+    x: &[f64],
+    height: usize,
+    start: usize,
 ) -> usize {
-    let Some(out) = out.first_chunk_mut::<N>() else { return out.len() };
-    let mut sums = out.map(Pack);
-    for (column, f) in columns.chunks_exact(rows).zip(x) {
-        let Some(column) = column[at..].first_chunk::<N>() else { break };
-        let f = Pack::splat(*f);
-        for n in 0..N {
-            sums[n] = f.mul_add(Pack(column[n]), sums[n]);
+    let mut sums = [[Pack::default(); N]; 2];
+    let mut from = start + at;
+    let pairs = x.as_chunks::<2>();
+    for pair in pairs.0 {
+        for side in 0..2 {
+            let column = &columns[from..from + N];
+            let factor = Pack::splat(pair[side]);
+            for n in 0..N {
+                sums[side][n] = factor.mul_add(column[n], sums[side][n]);
+            }
+            from += height;
         }
     }
+    if let [last] = pairs.1 {
+        let column = &columns[from..from + N];
+        for n in 0..N {
+            sums[0][n] = Pack::splat(*last).mul_add(column[n], sums[0][n]);
+        }
+    }
+    let out = &mut out[at..at + N];
     for n in 0..N {
-        out[n] = sums[n].0;
+        out[n] += sums[0][n] + sums[1][n];
     }
     N
 }
@@ -123,17 +135,14 @@ pub fn invert(matrix: &mut [f64], size: usize) -> bool {
     true
 }
 
-/// Dot product in eight interleaved partial sums.
+/// Dot product of numbers in packs, in eight interleaved partial sums.
 #[inline(always)]
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = Pack::splat(0.0);
-    let (mut left, mut right) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
-    for (x, y) in left.by_ref().zip(right.by_ref()) {
-        sums = Pack::read(x).mul_add(Pack::read(y), sums);
+pub fn dot(a: &[Pack], b: &[Pack]) -> f64 {
+    let mut sums = Pack::default();
+    for (x, y) in a.iter().zip(b) {
+        sums = x.mul_add(*y, sums);
     }
-    let rest: f64 = left.remainder().iter().zip(right.remainder()).map(|(x, y)| x * y).sum();
-    let [a, b, c, d, e, f, g, h] = sums.0;
-    ((a + b) + (c + d)) + ((e + f) + (g + h)) + rest
+    sums.sum()
 }
 
 #[cfg(test)]
@@ -157,7 +166,9 @@ mod tests {
         let size = 13;
         let a = example(size);
         let x: Vec<f64> = (0..size).map(|i| (i as f64).sin()).collect();
-        let b: Vec<f64> = (0..size).map(|i| dot(&a[i * size..(i + 1) * size], &x)).collect();
+        let row = |i: usize| &a[i * size..(i + 1) * size];
+        let times_x = |i: usize| row(i).iter().zip(&x).map(|(a, x)| a * x).sum();
+        let b: Vec<f64> = (0..size).map(times_x).collect();
         let mut lu = a.clone();
         assert!(factor(&mut lu, size));
         let mut by_lu = b.clone();
@@ -165,7 +176,7 @@ mod tests {
         let mut inverse = a;
         assert!(invert(&mut inverse, size));
         for i in 0..size {
-            let by_inverse = dot(&inverse[i * size..(i + 1) * size], &b);
+            let by_inverse: f64 = (0..size).map(|j| inverse[i * size + j] * b[j]).sum();
             assert!((by_lu[i] - x[i]).abs() < 1e-13 && (by_inverse - x[i]).abs() < 1e-13);
         }
     }

@@ -3,62 +3,53 @@
 use crate::pack::{Pack, LANES};
 
 /// Inverts the first `size` rows and columns of a matrix whose symmetric part is positive definite, in
-/// place (Gauss-Jordan without pivoting); `false` if a pivot is not positive. Rows are full packs.
+/// place (Gauss-Jordan without pivoting); `false` if a pivot is not positive. Rows are `n` packs; `room` is
+/// two rows.
+///
+/// Two pivots at a time, because going through the matrix costs more than what is done to a row.
 #[inline(always)]
-pub fn invert_rows(matrix: &mut [f64], size: usize) -> bool {
-    let stride = size.div_ceil(LANES);
-    let packs = matrix.as_chunks_mut().0;
-    match stride {
-        1 => gauss_jordan::<1>(packs, size),
-        2 => gauss_jordan::<2>(packs, size),
-        3 => gauss_jordan::<3>(packs, size),
-        4 => gauss_jordan::<4>(packs, size),
-        _ => gauss_jordan_wide(packs, size, stride),
-    }
-}
-
-/// [`invert_rows`] for rows of `N` packs: two pivots at a time, because going through the matrix costs more
-/// than what is done to a row.
-#[inline(always)]
-fn gauss_jordan<const N: usize>(packs: &mut [[f64; LANES]], size: usize) -> bool {
-    let rows = &mut packs.as_chunks_mut::<N>().0[..size];
-    // No iterator over the pairs: a closure is not compiled for the instruction set of its caller.
+pub fn invert_rows(matrix: &mut [Pack], n: usize, size: usize, room: &mut [Pack]) -> bool {
+    let matrix = &mut matrix[..size * n];
     for pair in 0..size / 2 {
-        if !two_pivots(rows, 2 * pair) {
+        if !two_pivots(matrix, n, 2 * pair, room) {
             return false;
         }
     }
-    size.is_multiple_of(2) || last_pivot(rows)
+    size.is_multiple_of(2) || last_pivot(matrix, n, size - 1, room)
 }
 
 /// Eliminates columns `k` and `k` + 1; both lie in the same pack, since `k` is even.
 #[inline(always)]
-fn two_pivots<const N: usize>(rows: &mut [[[f64; LANES]; N]], k: usize) -> bool {
+fn two_pivots(matrix: &mut [Pack], n: usize, k: usize, room: &mut [Pack]) -> bool {
     let (pack, lane) = (k / LANES, k % LANES);
-    let (upper_row, lower_row) = (&rows[k][pack], &rows[k + 1][pack]);
+    let (row_a, row_b) = room[..2 * n].split_at_mut(n);
+    row_a.copy_from_slice(&matrix[k * n..(k + 1) * n]);
+    row_b.copy_from_slice(&matrix[(k + 1) * n..(k + 2) * n]);
+    let (upper_row, lower_row) = (row_a[pack].0, row_b[pack].0);
     let block = [[upper_row[lane], upper_row[lane + 1]], [lower_row[lane], lower_row[lane + 1]]];
     let Some([[corner, upper], [lower, q]]) = invert_block(block) else { return false };
     let (corner, upper) = (Pack::splat(corner), Pack::splat(upper));
     let (lower, q) = (Pack::splat(lower), Pack::splat(q));
     let [first, second] = [UNIT[lane], UNIT[lane + 1]];
-    let keep = masks::<N>(pack, Pack::splat(1.0) - first - second);
-    let (mut row_a, mut row_b) = ([Pack::splat(0.0); N], [Pack::splat(0.0); N]);
-    for n in 0..N {
-        let (mut x, mut y) = (keep[n] * Pack(rows[k][n]), keep[n] * Pack(rows[k + 1][n]));
-        if n == pack {
-            (x, y) = (x + first, y + second);
-        }
-        row_a[n] = corner.mul_add(x, upper * y);
-        row_b[n] = lower.mul_add(x, q * y);
+    let keep = Pack::splat(1.0) - first - second;
+    // Masks instead of single numbers written: a row that was written in parts cannot be read as a whole
+    // until all parts have reached the cache.
+    row_a[pack] = keep.mul_add(row_a[pack], first);
+    row_b[pack] = keep.mul_add(row_b[pack], second);
+    for i in 0..n {
+        let (x, y) = (row_a[i], row_b[i]);
+        row_a[i] = corner.mul_add(x, upper * y);
+        row_b[i] = lower.mul_add(x, q * y);
     }
-    for row in rows.iter_mut() {
-        let (x, y) = (Pack::splat(-row[pack][lane]), Pack::splat(-row[pack][lane + 1]));
-        for n in 0..N {
-            row[n] = y.mul_add(row_b[n], x.mul_add(row_a[n], keep[n] * Pack(row[n]))).0;
+    for row in matrix.chunks_exact_mut(n) {
+        let (x, y) = (Pack::splat(row[pack].0[lane]), Pack::splat(row[pack].0[lane + 1]));
+        row[pack] = keep * row[pack];
+        for i in 0..n {
+            row[i] = (-y).mul_add(row_b[i], (-x).mul_add(row_a[i], row[i]));
         }
     }
-    rows[k] = row_a.map(|part| part.0);
-    rows[k + 1] = row_b.map(|part| part.0);
+    matrix[k * n..(k + 1) * n].copy_from_slice(row_a);
+    matrix[(k + 1) * n..(k + 2) * n].copy_from_slice(row_b);
     true
 }
 
@@ -75,47 +66,34 @@ fn invert_block([[a, b], [c, d]]: [[f64; 2]; 2]) -> Option<[[f64; 2]; 2]> {
     Some([[inverse_a - upper * c * inverse_a, upper], [-c * inverse_a * q, q]])
 }
 
-/// Eliminates the last column.
+/// Eliminates the last column, number `k`.
 #[inline(always)]
-fn last_pivot<const N: usize>(rows: &mut [[[f64; LANES]; N]]) -> bool {
-    let k = rows.len() - 1;
+fn last_pivot(matrix: &mut [Pack], n: usize, k: usize, room: &mut [Pack]) -> bool {
     let (pack, lane) = (k / LANES, k % LANES);
-    let pivot = rows[k][pack][lane];
+    let own = &mut room[..n];
+    own.copy_from_slice(&matrix[k * n..(k + 1) * n]);
+    let pivot = own[pack].0[lane];
     if pivot.is_nan() || pivot <= 0.0 {
         return false;
     }
-    let keep = masks::<N>(pack, Pack::splat(1.0) - UNIT[lane]);
-    let inverse = Pack::splat(1.0 / pivot);
-    let mut pivot_row = [inverse; N];
-    for n in 0..N {
-        let kept = keep[n] * Pack(rows[k][n]);
-        pivot_row[n] = if n == pack { kept + UNIT[lane] } else { kept } * inverse;
+    let (keep, inverse) = (Pack::splat(1.0) - UNIT[lane], Pack::splat(1.0 / pivot));
+    own[pack] = keep.mul_add(own[pack], UNIT[lane]);
+    for part in own.iter_mut() {
+        *part = *part * inverse;
     }
-    for row in rows.iter_mut() {
-        let negative = Pack::splat(-row[pack][lane]);
-        for n in 0..N {
-            row[n] = negative.mul_add(pivot_row[n], keep[n] * Pack(row[n])).0;
+    for row in matrix.chunks_exact_mut(n) {
+        let x = Pack::splat(row[pack].0[lane]);
+        row[pack] = keep * row[pack];
+        for i in 0..n {
+            row[i] = (-x).mul_add(own[i], row[i]);
         }
     }
-    rows[k] = pivot_row.map(|part| part.0);
+    matrix[k * n..(k + 1) * n].copy_from_slice(own);
     true
 }
 
-/// `mask` in one pack of a row, ones in all others. Masks instead of single numbers written: a row that was
-/// written in parts cannot be read as a whole until all parts have reached the cache.
-#[inline(always)]
-fn masks<const N: usize>(pack: usize, mask: Pack) -> [Pack; N] {
-    let mut masks = [Pack::splat(1.0); N];
-    for (n, own) in masks.iter_mut().enumerate() {
-        if n == pack {
-            *own = mask;
-        }
-    }
-    masks
-}
-
 /// Zeros but for a one in each lane.
-const UNIT: [Pack; LANES] = {
+pub const UNIT: [Pack; LANES] = {
     let mut unit = [Pack([0.0; LANES]); LANES];
     let mut lane = 0;
     while lane < LANES {
@@ -125,76 +103,10 @@ const UNIT: [Pack; LANES] = {
     unit
 };
 
-/// [`invert_rows`] for rows of any number of packs.
-#[inline(always)]
-fn gauss_jordan_wide(packs: &mut [[f64; LANES]], size: usize, stride: usize) -> bool {
-    for pair in 0..size / 2 {
-        if !two_pivots_wide(&mut packs[..size * stride], stride, 2 * pair) {
-            return false;
-        }
-    }
-    size.is_multiple_of(2) || last_pivot_wide(&mut packs[..size * stride], stride)
-}
-
-/// [`two_pivots`] for rows of `stride` packs.
-#[inline(always)]
-fn two_pivots_wide(packs: &mut [[f64; LANES]], stride: usize, k: usize) -> bool {
-    let (pack, lane) = (k / LANES, k % LANES);
-    let (above, rest) = packs.split_at_mut(k * stride);
-    let (pivots, below) = rest.split_at_mut(2 * stride);
-    let (row_a, row_b) = pivots.split_at_mut(stride);
-    let block =
-        [[row_a[pack][lane], row_a[pack][lane + 1]], [row_b[pack][lane], row_b[pack][lane + 1]]];
-    let Some([[corner, upper], [lower, q]]) = invert_block(block) else { return false };
-    let (corner, upper) = (Pack::splat(corner), Pack::splat(upper));
-    let (lower, q) = (Pack::splat(lower), Pack::splat(q));
-    let [first, second] = [UNIT[lane], UNIT[lane + 1]];
-    let keep = Pack::splat(1.0) - first - second;
-    row_a[pack] = (keep * Pack(row_a[pack]) + first).0;
-    row_b[pack] = (keep * Pack(row_b[pack]) + second).0;
-    for (a, b) in row_a.iter_mut().zip(row_b.iter_mut()) {
-        let (x, y) = (Pack(*a), Pack(*b));
-        *a = corner.mul_add(x, upper * y).0;
-        *b = lower.mul_add(x, q * y).0;
-    }
-    for row in above.chunks_exact_mut(stride).chain(below.chunks_exact_mut(stride)) {
-        let (x, y) = (Pack::splat(-row[pack][lane]), Pack::splat(-row[pack][lane + 1]));
-        row[pack] = (keep * Pack(row[pack])).0;
-        for ((own, a), b) in row.iter_mut().zip(row_a.iter()).zip(row_b.iter()) {
-            *own = y.mul_add(Pack(*b), x.mul_add(Pack(*a), Pack(*own))).0;
-        }
-    }
-    true
-}
-
-/// [`last_pivot`] for rows of `stride` packs.
-#[inline(always)]
-fn last_pivot_wide(packs: &mut [[f64; LANES]], stride: usize) -> bool {
-    let k = packs.len() / stride - 1;
-    let (pack, lane) = (k / LANES, k % LANES);
-    let (above, row) = packs.split_at_mut(k * stride);
-    let pivot = row[pack][lane];
-    if pivot.is_nan() || pivot <= 0.0 {
-        return false;
-    }
-    let (keep, inverse) = (Pack::splat(1.0) - UNIT[lane], Pack::splat(1.0 / pivot));
-    row[pack] = (keep * Pack(row[pack]) + UNIT[lane]).0;
-    for part in row.iter_mut() {
-        *part = (Pack(*part) * inverse).0;
-    }
-    for other in above.chunks_exact_mut(stride) {
-        let negative = Pack::splat(-other[pack][lane]);
-        other[pack] = (keep * Pack(other[pack])).0;
-        for (own, part) in other.iter_mut().zip(row.iter()) {
-            *own = negative.mul_add(Pack(*part), Pack(*own)).0;
-        }
-    }
-    true
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pack::Aligned;
 
     #[test]
     fn rows_times_their_inverse_are_ones_on_the_diagonal() {
@@ -205,13 +117,15 @@ mod tests {
                 let apart = i as f64 - j as f64;
                 1.0 / (1.0 + apart * apart) + 0.1 * apart.sin() + if i == j { 0.5 } else { 0.0 }
             };
-            let mut inverse = vec![0.0; size * stride];
+            let n = stride / LANES;
+            let mut inverse = Aligned::zeros(size * stride);
             for i in 0..size {
                 for j in 0..size {
                     inverse[i * stride + j] = entry(i, j);
                 }
             }
-            assert!(invert_rows(&mut inverse, size));
+            let mut room = vec![Pack::default(); 2 * n];
+            assert!(invert_rows(inverse.packs_mut(), n, size, &mut room));
             for i in 0..size {
                 for j in 0..size {
                     let one: f64 = (0..size).map(|k| entry(i, k) * inverse[k * stride + j]).sum();
@@ -229,11 +143,13 @@ mod tests {
     fn a_matrix_that_is_not_positive_definite_is_refused() {
         for size in [2_usize, 3, 40, 41] {
             let stride = size.div_ceil(LANES) * LANES;
-            let mut matrix = vec![0.0; size * stride];
+            let n = stride / LANES;
+            let mut matrix = Aligned::zeros(size * stride);
             for i in 0..size {
                 matrix[i * stride + i] = if i == size - 1 { -1.0 } else { 1.0 };
             }
-            assert!(!invert_rows(&mut matrix, size), "{size}");
+            let mut room = vec![Pack::default(); 2 * n];
+            assert!(!invert_rows(matrix.packs_mut(), n, size, &mut room), "{size}");
         }
     }
 }

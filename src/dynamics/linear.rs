@@ -100,7 +100,7 @@ impl Linear {
                 Aligned::padded((&reduction.coupling[r] * scale).as_slice(), modes, 0.0)
             }),
             block_mass: linear_density * params.block.length * params.block.height,
-            node_x: Aligned::padded(&reduction.mesh.x, stride, 0.0),
+            node_x: Aligned::padded(&reduction.interface.x, stride, 0.0),
             node_z: -params.block.height,
             base,
             road_moves: params.drive.normal == NormalDrive::Load,

@@ -39,6 +39,8 @@ pub struct FlatMatrices {
     /// Slope of the normal force by the normal velocity that the elimination assumes, per node
     /// \[N s/m\].
     pub normal_slope: Aligned,
+    /// Diagonal of B \[N s/m\]: how a node resists to sliding faster than the others.
+    pub resistance: Aligned,
     /// \[B; Pᵀ\], B = S_tt − P S_nt symmetric, P = S_tn A⁻¹.
     pub by_tangential: Aligned,
     /// \[P; A⁻¹\], A⁻¹ = (S_nn + normal slope)⁻¹ symmetric.
@@ -60,6 +62,7 @@ impl StageMatrices {
             inverse_delassus: Aligned::zeros(4 * linear.nodes * linear.nodes),
             flat: FlatMatrices {
                 normal_slope: Aligned::zeros(stride),
+                resistance: Aligned::zeros(stride),
                 by_tangential: Aligned::zeros(2 * stride * stride),
                 by_normal: Aligned::zeros(2 * stride * stride),
                 room: [(); 2].map(|()| Aligned::zeros(linear.nodes * linear.nodes)),
@@ -203,6 +206,7 @@ impl FlatMatrices {
                 self.by_tangential[i * 2 * stride + j] = full(i, j) - sum;
                 self.by_tangential[j * 2 * stride + i] = full(i, j) - sum;
             }
+            self.resistance[i] = self.by_tangential[i * 2 * stride + i];
         }
         true
     }

@@ -7,7 +7,7 @@ use super::matrices::{FlatMatrices, StageMatrices};
 use super::stage::Stage;
 use super::{dense, gauss_jordan};
 use crate::contact::Traction;
-use crate::pack::Aligned;
+use crate::pack::{Aligned, Pack, LANES};
 
 /// Largest fall of friction with speed that a direction follows, as a share of the block's own
 /// resistance: far from the solution the tangent of a steeper fall overshoots, near it only the
@@ -24,12 +24,12 @@ const SAME_SLOPE: f64 = 0.25;
 /// Ratio of a change to the one before, above which the inverse is made anew.
 const SLOW: f64 = 0.2;
 
-/// A direction and the buffers to find it.
+/// A direction and the buffers to find it; vectors per node are padded to full packs.
 #[derive(Clone, Debug)]
 pub(super) struct Newton {
-    /// Change of the contact velocities \[m/s\], padded.
+    /// Change of the contact velocities \[m/s\].
     direction: Aligned,
-    /// v − v_free \[m/s\], padded.
+    /// v − v_free \[m/s\].
     difference: Aligned,
     /// f_n + (assumed slope)·(v − v_free)_n \[N\].
     normal: Aligned,
@@ -39,7 +39,8 @@ pub(super) struct Newton {
     of_normal: Aligned,
     /// What is left of the tangential balance, with the other sign \[N\].
     residual: Aligned,
-    diagonal: Aligned,
+    /// −∂(tangential)/∂(tangential speed) that the direction follows \[N s/m\].
+    followed: Aligned,
     matrix: Aligned,
     /// K⁻¹, column by column, for the slopes in `slopes`; see [`Self::renew_inverse`].
     inverse: Aligned,
@@ -48,27 +49,34 @@ pub(super) struct Newton {
     gentle: bool,
     compact: Aligned,
     /// −∂f/∂v per node in the block's frame: xx, xz, zx, zz \[N s/m\].
-    slopes: Vec<[f64; 4]>,
+    slopes: [Aligned; 4],
+    /// Two rows for the inverse.
+    room: Aligned,
+    /// 1 per node, 0 in the padding.
+    inside: Aligned,
     nodes: usize,
 }
 
 impl Newton {
     pub(super) fn new(linear: &Linear) -> Self {
         let (nodes, stride) = (linear.nodes, linear.stride);
+        let row = || Aligned::zeros(stride);
         Self {
             direction: Aligned::zeros(2 * stride),
             difference: Aligned::zeros(2 * stride),
-            normal: Aligned::zeros(stride),
+            normal: row(),
             of_tangential: Aligned::zeros(2 * stride),
             of_normal: Aligned::zeros(2 * stride),
-            residual: Aligned::zeros(stride),
-            diagonal: Aligned::zeros(stride),
+            residual: row(),
+            followed: row(),
             matrix: Aligned::zeros(4 * nodes * nodes),
             inverse: Aligned::zeros(nodes * stride),
             known: false,
             gentle: false,
             compact: Aligned::zeros(2 * nodes),
-            slopes: vec![[0.0; 4]; stride],
+            slopes: [row(), row(), row(), row()],
+            room: Aligned::zeros(2 * stride),
+            inside: Aligned::padded(&vec![1.0; nodes], stride, 0.0),
             nodes,
         }
     }
@@ -95,37 +103,44 @@ impl Newton {
     #[inline(always)]
     fn renew_inverse(
         &mut self,
+        n: usize,
         m: &FlatMatrices,
         t: &Traction,
         iteration: usize,
         slow: bool,
     ) -> bool {
-        let steepest_fall = self.steepest_fall(iteration);
-        let stride = self.residual.len();
-        let mut near = self.known && iteration < CHORDS && !slow;
-        for i in 0..self.nodes {
+        let steepest = Pack::splat(-self.steepest_fall(iteration));
+        let own = &m.resistance.packs()[..n];
+        let (slip_slope, coupling) = (&t.slip_slope.packs()[..n], &t.coupling.packs()[..n]);
+        let followed = &mut self.followed.packs_mut()[..n];
+        let [kept_slope, kept_coupling, _, kept_normal] = &mut self.slopes;
+        let kept_slope = &mut kept_slope.packs_mut()[..n];
+        let mut farthest = Pack::splat(f64::MIN);
+        for k in 0..n {
             // A falling characteristic is not followed: its tangent would overshoot.
-            let own = m.by_tangential[i * 2 * stride + i];
-            let slope = t.slip_slope[i].max(-steepest_fall * own);
-            near &= (slope - self.slopes[i][0]).abs() <= SAME_SLOPE * (own + slope);
-            self.diagonal[i] = slope;
+            followed[k] = slip_slope[k].max(steepest * own[k]);
+            let allowed = Pack::splat(SAME_SLOPE) * (own[k] + followed[k]);
+            farthest = farthest.max((followed[k] - kept_slope[k]).abs() - allowed);
         }
-        if near {
+        if self.known && iteration < CHORDS && !slow && farthest.largest() <= 0.0 {
             return true;
         }
-        self.known = false;
+        kept_slope.copy_from_slice(followed);
+        kept_coupling.packs_mut()[..n].copy_from_slice(coupling);
+        kept_normal.packs_mut()[..n].copy_from_slice(&m.normal_slope.packs()[..n]);
         // Row by row the transpose: its inverse then stands column by column.
-        let rows = m.by_tangential.chunks_exact(2 * stride);
-        let rows = self.inverse.chunks_exact_mut(stride).zip(rows);
-        for (i, (to, row)) in rows.enumerate().take(self.nodes) {
-            let (b, p) = row.split_at(stride);
-            for (((to, b), p), c) in to.iter_mut().zip(b).zip(p).zip(&t.coupling) {
-                *to = b - c * p;
+        let inverse = &mut self.inverse.packs_mut()[..self.nodes * n];
+        let columns = m.by_tangential.packs().chunks_exact(2 * n);
+        for (i, (to, column)) in inverse.chunks_exact_mut(n).zip(columns).enumerate() {
+            let (b, p) = column.split_at(n);
+            for k in 0..n {
+                to[k] = (-coupling[k]).mul_add(p[k], b[k]);
             }
-            to[i] += self.diagonal[i];
-            self.slopes[i] = [self.diagonal[i], t.coupling[i], 0.0, m.normal_slope[i]];
+            // The diagonal by a whole pack, see `gauss_jordan`.
+            let (pack, lane) = (i / LANES, i % LANES);
+            to[pack] = gauss_jordan::UNIT[lane].mul_add(followed[pack], to[pack]);
         }
-        self.known = gauss_jordan::invert_rows(&mut self.inverse, self.nodes);
+        self.known = gauss_jordan::invert_rows(inverse, n, self.nodes, self.room.packs_mut());
         self.known
     }
 }
@@ -137,46 +152,51 @@ impl Stage {
     #[inline(always)]
     pub(super) fn flat_direction(
         &mut self,
+        n: usize,
         m: &FlatMatrices,
         iteration: usize,
         changes: [f64; 2],
     ) -> bool {
-        let n = &mut self.newton;
-        let (stride, t) = (self.slip.len(), &self.traction);
-        if !n.renew_inverse(m, t, iteration, changes[1] > SLOW * changes[0]) {
+        let (newton, t) = (&mut self.newton, &self.traction);
+        if !newton.renew_inverse(n, m, t, iteration, changes[1] > SLOW * changes[0]) {
             return false;
         }
-        for ((d, v), free) in n.difference.iter_mut().zip(&self.v).zip(&self.v_free) {
-            *d = v - free;
+        let nodes = newton.nodes;
+        let (v, v_free) = (&self.v.packs()[..2 * n], &self.v_free.packs()[..2 * n]);
+        let (tangential, f_n) = (&t.tangential.packs()[..n], &t.normal.packs()[..n]);
+        let normal_slope = &m.normal_slope.packs()[..n];
+        let difference = &mut newton.difference.packs_mut()[..2 * n];
+        let normal = &mut newton.normal.packs_mut()[..n];
+        let force = &mut self.force.packs_mut()[..2 * n];
+        for k in 0..n {
+            difference[k] = v[k] - v_free[k];
+            difference[n + k] = v[n + k] - v_free[n + k];
+            normal[k] = normal_slope[k].mul_add(difference[n + k], f_n[k]);
+            force[k] = tangential[k];
+            force[n + k] = f_n[k];
         }
-        let (d_t, d_n) = n.difference.split_at(stride);
-        for i in 0..stride {
-            n.normal[i] = t.normal[i] + m.normal_slope[i] * d_n[i];
-        }
-        self.force[..stride].copy_from_slice(&t.tangential);
-        self.force[stride..].copy_from_slice(&t.normal);
         // B d_t and Pᵀ d_t, P φ and A⁻¹ φ.
-        for product in [&mut n.of_tangential, &mut n.of_normal] {
-            product.fill(0.0);
-        }
-        dense::add_columns(&mut n.of_tangential, &m.by_tangential, &d_t[..n.nodes]);
-        dense::add_columns(&mut n.of_normal, &m.by_normal, &n.normal[..n.nodes]);
-        let (direction_t, direction_n) = n.direction.split_at_mut(stride);
-        let (b_d, p_d) = n.of_tangential.split_at(stride);
-        let (p_phi, a_phi) = n.of_normal.split_at(stride);
-        for i in 0..stride {
+        let (by_tangential, by_normal) = (m.by_tangential.packs(), m.by_normal.packs());
+        let of_tangential = &mut newton.of_tangential.packs_mut()[..2 * n];
+        let of_normal = &mut newton.of_normal.packs_mut()[..2 * n];
+        dense::multiply(of_tangential, by_tangential, &newton.difference[..nodes]);
+        dense::multiply(of_normal, by_normal, &newton.normal[..nodes]);
+        let d_n = &newton.difference.packs()[n..2 * n];
+        let coupling = &newton.slopes[1].packs()[..n];
+        let residual = &mut newton.residual.packs_mut()[..n];
+        let (direction_t, direction_n) = newton.direction.packs_mut()[..2 * n].split_at_mut(n);
+        for k in 0..n {
             // The normal change if the tangential one were none.
-            direction_n[i] = a_phi[i] - d_n[i] - p_d[i];
-            let pull = n.slopes[i][1] * direction_n[i];
-            n.residual[i] = -(t.tangential[i] - b_d[i] - p_phi[i] - pull);
+            direction_n[k] = of_normal[n + k] - d_n[k] - of_tangential[n + k];
+            let left = tangential[k] - of_tangential[k] - of_normal[k];
+            residual[k] = coupling[k].mul_add(direction_n[k], -left);
         }
         // −δ_t, since −Pᵀ δ_t is what is added to the normal change.
-        direction_t.fill(0.0);
-        dense::add_columns(direction_t, &n.inverse, &n.residual[..n.nodes]);
-        let steps = &direction_t[..n.nodes];
-        dense::add_lower_columns(direction_n, &m.by_tangential, steps, stride);
-        for x in direction_t.iter_mut() {
-            *x = -*x;
+        dense::multiply(direction_t, newton.inverse.packs(), &newton.residual[..nodes]);
+        let steps: &[f64] = &bytemuck::cast_slice(direction_t)[..nodes];
+        dense::add_columns(direction_n, by_tangential, steps, 2 * n, n);
+        for step in direction_t.iter_mut() {
+            *step = -*step;
         }
         true
     }
@@ -191,7 +211,7 @@ impl Stage {
         let n = &mut self.newton;
         let steepest_fall = n.steepest_fall(iteration);
         n.forget();
-        let (nodes, stride) = (n.nodes, self.slip.len());
+        let (nodes, stride) = (n.nodes, self.placed.slip.len());
         let size = 2 * nodes;
         let place = |c: usize| c / nodes * stride + c % nodes;
         let [sin, cos] = motion.sin_cos;
@@ -216,13 +236,16 @@ impl Stage {
             matrix[i * size + nodes + i] += slopes[1];
             matrix[(nodes + i) * size + i] += slopes[2];
             matrix[(nodes + i) * size + nodes + i] += slopes[3];
-            n.slopes[i] = slopes;
+            for (kept, slope) in n.slopes.iter_mut().zip(slopes) {
+                kept[i] = slope;
+            }
         }
         for c in 0..size {
             n.difference[c] = self.v[place(c)] - self.v_free[place(c)];
         }
         for (c, row) in matrices.inverse_delassus.chunks_exact(size).enumerate() {
-            n.compact[c] = self.force[place(c)] - dense::dot(row, &n.difference[..size]);
+            let product: f64 = row.iter().zip(&n.difference).map(|(s, d)| s * d).sum();
+            n.compact[c] = self.force[place(c)] - product;
         }
         if !dense::factor(matrix, size) {
             return false;
@@ -235,50 +258,51 @@ impl Stage {
         true
     }
 
-    /// Goes along the direction; returns the largest change of a velocity that it asked for.
+    /// Largest change of a velocity that the direction asks for \[m/s\].
+    #[inline(always)]
+    pub(super) fn change(&self, n: usize) -> f64 {
+        let (x, z) = self.newton.direction.packs()[..2 * n].split_at(n);
+        let inside = &self.newton.inside.packs()[..n];
+        let mut most = Pack::default();
+        for k in 0..n {
+            // The padding is carried along with the face, which no direction accounts for.
+            most = most.max(inside[k] * x[k].abs().max(z[k].abs()));
+        }
+        most.largest()
+    }
+
+    /// Goes along the direction.
     ///
     /// A tangential speed that would change its sign stops at zero: friction is concave on either
-    /// side, so from there the iteration cannot overshoot again. The last step
-    /// is whole: its forces follow along the tangent, so that they and the velocities satisfy the
-    /// linear equations to rounding.
+    /// side, so from there the iteration cannot overshoot again. The last step is `whole`: its forces
+    /// follow along the tangent, so that they and the velocities satisfy the linear equations to
+    /// rounding.
     #[inline(always)]
-    pub(super) fn take_direction(&mut self, motion: &Kinematics, tolerance: f64) -> f64 {
-        let n = &mut self.newton;
-        let stride = self.slip.len();
-        let [sin, cos] = motion.sin_cos;
-        let (direction_x, direction_z) = n.direction.split_at(stride);
-        // The padding is carried along with the face, which no direction accounts for.
-        let mut change = 0.0;
-        for i in 0..n.nodes {
-            let most = larger(direction_x[i].abs(), direction_z[i].abs());
-            change = larger(most, change);
-        }
-        let near = change < tolerance;
-        let (vx, vz) = self.v.split_at_mut(stride);
-        let (fx, fz) = self.force.split_at_mut(stride);
-        for i in 0..n.nodes {
-            let (mut dx, dz) = (direction_x[i], direction_z[i]);
-            let slip = self.slip[i];
-            let crosses = slip * (slip + cos * dx - sin * dz) < 0.0;
-            if crosses && !near {
-                dx = (sin * dz - slip) / cos;
+    pub(super) fn take_direction(&mut self, n: usize, motion: &Kinematics, whole: bool) {
+        let [sin, cos] = motion.sin_cos.map(Pack::splat);
+        let newton = &mut self.newton;
+        let (direction_x, direction_z) = newton.direction.packs()[..2 * n].split_at(n);
+        let inside = &newton.inside.packs()[..n];
+        let [xx, xz, zx, zz] = &newton.slopes;
+        let (xx, xz) = (&xx.packs()[..n], &xz.packs()[..n]);
+        let (zx, zz) = (&zx.packs()[..n], &zz.packs()[..n]);
+        let slip = &self.placed.slip.packs()[..n];
+        let (vx, vz) = self.v.packs_mut()[..2 * n].split_at_mut(n);
+        let (fx, fz) = self.force.packs_mut()[..2 * n].split_at_mut(n);
+        let zero = Pack::default();
+        for k in 0..n {
+            let (mut dx, dz) = (inside[k] * direction_x[k], inside[k] * direction_z[k]);
+            if !whole {
+                let turned = sin * dz - slip[k];
+                // Where slip · (slip + change) is negative it crosses zero.
+                let after = cos.mul_add(dx, -turned);
+                let stopped = if cos == Pack::splat(1.0) { turned } else { turned / cos };
+                dx = (-(slip[k] * after)).if_above(zero, stopped, dx);
             }
-            let [xx, xz, zx, zz] = n.slopes[i];
-            fx[i] -= xx * dx + xz * dz;
-            fz[i] -= zx * dx + zz * dz;
-            vx[i] += dx;
-            vz[i] += dz;
+            fx[k] = fx[k] - xx[k].mul_add(dx, xz[k] * dz);
+            fz[k] = fz[k] - zx[k].mul_add(dx, zz[k] * dz);
+            vx[k] += dx;
+            vz[k] += dz;
         }
-        change
-    }
-}
-
-/// The larger of two numbers, where neither is NaN.
-#[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b {
-        a
-    } else {
-        b
     }
 }

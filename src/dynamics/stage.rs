@@ -6,8 +6,8 @@ use super::kinematics::{to_block, Kinematics};
 use super::linear::Linear;
 use super::matrices::StageMatrices;
 use super::newton::Newton;
-use crate::contact::{Face, Traction};
-use crate::pack::Aligned;
+use crate::contact::{Face, Placed, Traction};
+use crate::pack::{Aligned, Pack};
 
 /// How the Newton iteration of a stage went.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,12 +48,8 @@ pub struct Stage {
     pub v: Aligned,
     /// Solution: contact forces \[N\], block frame.
     pub force: Aligned,
-    /// Speed over the road and away from it \[m/s\] at the last evaluation.
-    pub slip: Aligned,
-    /// Speed away from the road \[m/s\] at the last evaluation.
-    pub lift: Aligned,
-    /// Compression \[m\] at the last evaluation.
-    pub compression: Aligned,
+    /// Compression, speed over the road and away from it at the last evaluation.
+    pub placed: Placed,
     /// Forces and slopes at the last evaluation.
     pub traction: Traction,
     /// Newton directions and their buffers.
@@ -83,9 +79,7 @@ impl Stage {
             base_velocity_end: [0.0; 2],
             v: c(),
             force: c(),
-            slip: n(),
-            lift: n(),
-            compression: n(),
+            placed: Placed::new(linear.nodes),
             traction: Traction::new(linear.nodes),
             newton: Newton::new(linear),
             v_free: c(),
@@ -98,24 +92,26 @@ impl Stage {
 
     /// Velocity \[m/s\] with which the prescribed motion carries contact node `i`, road frame.
     pub fn carried(&self, i: usize) -> [f64; 2] {
-        [self.carried[i], self.carried[self.slip.len() + i]]
+        [self.carried[i], self.carried[self.placed.slip.len() + i]]
     }
 
-    /// Solves the stage; the result is in `w_end`, `base_velocity_end`, `v`, `force`.
+    /// Solves the stage with `n` packs of nodes; the result is in `w_end`, `base_velocity_end`, `v`, `force`.
     #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
     pub fn solve(
         &mut self,
+        n: usize,
         linear: &Linear,
         face: &Face,
         matrices: &StageMatrices,
         motion: &Kinematics,
-        gap: &[f64],
-        factor: &[f64],
+        gap: &Aligned,
+        factor: &Aligned,
     ) -> Convergence {
-        let h = self.free_motion(linear, matrices, motion);
-        self.place(linear, matrices.a, motion, gap);
-        let convergence = self.iterate(face, matrices, motion, factor);
-        self.finish(linear, matrices, h);
+        let h = self.free_motion(n, linear, matrices, motion);
+        self.place(n, linear, matrices.a, motion, gap);
+        let convergence = self.iterate(n, face, matrices, motion, factor);
+        self.finish(n, linear, matrices, h);
         convergence
     }
 
@@ -123,30 +119,17 @@ impl Stage {
     #[inline(always)]
     fn free_motion(
         &mut self,
+        n: usize,
         linear: &Linear,
         matrices: &StageMatrices,
         motion: &Kinematics,
     ) -> [f64; 2] {
-        let (modes, a) = (linear.modes(), matrices.a);
+        let a = matrices.a;
         let driven = linear.prescribed_acceleration(motion.acceleration);
-        let acceleration = to_block(motion, driven);
-        for m in 0..modes {
-            self.rhs[m] = self.w[m]
-                - matrices.a_omega2[m] * self.z[m]
-                - a * linear.coupling_along(m, acceleration);
-        }
-        for (b, branch) in linear.branches.iter().enumerate() {
-            let weight = a * branch.share / (1.0 + a / branch.time);
-            let memory = &self.y[b * modes..(b + 1) * modes];
-            for ((r, y), omega2) in self.rhs.iter_mut().zip(memory).zip(&linear.omega2) {
-                *r += weight * omega2 * y;
-            }
-        }
-        for ((x, r), s) in self.scratch.iter_mut().zip(&self.rhs).zip(&matrices.s) {
-            *x = s * r;
-        }
-        self.v_free.fill(0.0);
-        dense::add_columns(&mut self.v_free, &linear.by_mode, &self.scratch);
+        self.modal_balance(linear, matrices, to_block(motion, driven));
+        let v_free = &mut self.v_free.packs_mut()[..2 * n];
+        dense::multiply(v_free, linear.by_mode.packs(), &self.scratch);
+        let modes = self.scratch.packs().len();
         let mut h = [0.0; 2];
         for (j, dof) in linear.base.iter().enumerate() {
             // The drive carries the mass of a deflection along.
@@ -156,35 +139,64 @@ impl Stage {
             };
             let velocity = self.base_velocity[j];
             let stretch = self.base[j] + a * velocity;
-            let coupling = &matrices.base_coupling[j * modes..(j + 1) * modes];
-            let inertia: f64 = dense::dot(coupling, &self.scratch) - dense::dot(coupling, &self.w);
+            let coupling = &matrices.base_coupling.packs()[j * modes..(j + 1) * modes];
+            let inertia: f64 =
+                dense::dot(coupling, self.scratch.packs()) - dense::dot(coupling, self.w.packs());
             h[j] = a * (external - dof.damping * velocity - dof.stiffness * stretch) - inertia;
         }
-        self.add_face_velocity(linear, matrices, motion, h);
+        self.add_face_velocity(n, linear, matrices, motion, h);
         h
+    }
+
+    /// `rhs` and `scratch` = s·`rhs`, the modal velocities without contact; `acceleration` of the clamped
+    /// face in the block's frame.
+    #[inline(always)]
+    fn modal_balance(&mut self, linear: &Linear, matrices: &StageMatrices, acceleration: [f64; 2]) {
+        let a = matrices.a;
+        let modes = self.rhs.packs().len();
+        let [ax, az] = acceleration.map(|along| Pack::splat(-a * along));
+        let (gx, gz) = (&linear.coupling[0].packs()[..modes], &linear.coupling[1].packs()[..modes]);
+        let (w, z) = (&self.w.packs()[..modes], &self.z.packs()[..modes]);
+        let (a_omega2, s) = (&matrices.a_omega2.packs()[..modes], &matrices.s.packs()[..modes]);
+        let rhs = &mut self.rhs.packs_mut()[..modes];
+        let free = &mut self.scratch.packs_mut()[..modes];
+        for m in 0..modes {
+            rhs[m] = gz[m].mul_add(az, gx[m].mul_add(ax, (-a_omega2[m]).mul_add(z[m], w[m])));
+        }
+        for (b, branch) in linear.branches.iter().enumerate() {
+            let weight = Pack::splat(a * branch.share / (1.0 + a / branch.time));
+            let memory = &self.y.packs()[b * modes..(b + 1) * modes];
+            let omega2 = &linear.omega2.packs()[..modes];
+            for m in 0..modes {
+                rhs[m] += weight * omega2[m] * memory[m];
+            }
+        }
+        for m in 0..modes {
+            free[m] = s[m] * rhs[m];
+        }
     }
 
     /// Adds e·b* + q·N⁻¹h to `v_free`.
     #[inline(always)]
     fn add_face_velocity(
         &mut self,
+        n: usize,
         linear: &Linear,
         matrices: &StageMatrices,
         motion: &Kinematics,
         h: [f64; 2],
     ) {
-        let stride = linear.stride;
         let y = times_2x2(&matrices.n_inverse, h);
+        let (vx, vz) = self.v_free.packs_mut()[..2 * n].split_at_mut(n);
         for (j, dof) in linear.base.iter().enumerate() {
             let mut road = [0.0; 2];
             road[dof.axis] = self.base_velocity[j];
-            let velocity = to_block(motion, road);
-            let q = &matrices.q[2 * j * stride..2 * (j + 1) * stride];
-            for (half, velocity) in velocity.iter().enumerate() {
-                let range = half * stride..(half + 1) * stride;
-                for (v, q) in self.v_free[range.clone()].iter_mut().zip(&q[range]) {
-                    *v += velocity + q * y[j];
-                }
+            let [x, z] = to_block(motion, road).map(Pack::splat);
+            let (qx, qz) = matrices.q.packs()[2 * j * n..2 * (j + 1) * n].split_at(n);
+            let y = Pack::splat(y[j]);
+            for k in 0..n {
+                vx[k] += qx[k].mul_add(y, x);
+                vz[k] += qz[k].mul_add(y, z);
             }
         }
     }
@@ -192,26 +204,30 @@ impl Stage {
     /// Where the nodes stand if their stage velocity were 0, and what velocity the prescribed
     /// motion carries them with.
     #[inline(always)]
-    fn place(&mut self, linear: &Linear, a: f64, motion: &Kinematics, gap: &[f64]) {
-        let stride = linear.stride;
-        let [sin, cos] = motion.sin_cos;
+    fn place(&mut self, n: usize, linear: &Linear, a: f64, motion: &Kinematics, gap: &Aligned) {
+        let splat = Pack::splat;
+        let [sin, cos] = motion.sin_cos.map(splat);
         let mut height = motion.position[1];
         for (j, dof) in linear.base.iter().enumerate() {
             if dof.axis == 1 {
                 height = self.base[j];
             }
         }
-        let velocity = linear.prescribed(motion.velocity);
-        let (ux, uz) = self.u.split_at(stride);
-        let (vx, vz) = self.v.split_at(stride);
-        let (carried_x, carried_z) = self.carried.split_at_mut(stride);
-        for i in 0..stride {
-            let (x, z) = (linear.node_x[i] + ux[i], linear.node_z + uz[i]);
-            self.rest_compression[i] = -(height + sin * x + cos * z) - gap[i];
+        let (height, a, omega) = (splat(height), splat(a), splat(motion.omega));
+        let velocity = linear.prescribed(motion.velocity).map(splat);
+        let (node_x, node_z) = (&linear.node_x.packs()[..n], splat(linear.node_z));
+        let gap = &gap.packs()[..n];
+        let (ux, uz) = self.u.packs()[..2 * n].split_at(n);
+        let (vx, vz) = self.v.packs()[..2 * n].split_at(n);
+        let (carried_x, carried_z) = self.carried.packs_mut()[..2 * n].split_at_mut(n);
+        let rest = &mut self.rest_compression.packs_mut()[..n];
+        for k in 0..n {
+            let (x, z) = (node_x[k] + ux[k], node_z + uz[k]);
+            rest[k] = -(height + sin.mul_add(x, cos * z)) - gap[k];
             // The turning carries the node as it will stand at the end of the stage.
-            let (x, z) = (x + a * vx[i], z + a * vz[i]);
-            carried_x[i] = velocity[0] - motion.omega * (sin * x + cos * z);
-            carried_z[i] = velocity[1] + motion.omega * (cos * x - sin * z);
+            let (x, z) = (a.mul_add(vx[k], x), a.mul_add(vz[k], z));
+            carried_x[k] = velocity[0] - omega * sin.mul_add(x, cos * z);
+            carried_z[k] = velocity[1] + omega * cos.mul_add(x, -(sin * z));
         }
     }
 
@@ -219,10 +235,11 @@ impl Stage {
     #[inline(always)]
     fn iterate(
         &mut self,
+        n: usize,
         face: &Face,
         matrices: &StageMatrices,
         motion: &Kinematics,
-        factor: &[f64],
+        factor: &Aligned,
     ) -> Convergence {
         let tolerance = CHANGE_TOLERANCE * face.smoothing_speed;
         let flat = motion.sin_cos[0] == 0.0;
@@ -230,8 +247,8 @@ impl Stage {
         let mut guess_left = true;
         let mut changes = [f64::INFINITY; 2];
         loop {
-            let highest = self.evaluate(face, matrices.a, motion, factor);
-            if highest <= 0.0 && convergence.iterations == 0 {
+            let highest = self.evaluate(n, face, matrices.a, motion, factor);
+            if convergence.iterations == 0 && highest <= 0.0 {
                 if !guess_left {
                     // The road is out of reach altogether.
                     self.force.fill(0.0);
@@ -246,7 +263,7 @@ impl Stage {
             // stiff as it assumes; where it does not, the full matrix serves.
             let iteration = convergence.iterations;
             let solved = if flat && iteration <= FLAT_ITERATIONS {
-                self.flat_direction(&matrices.flat, iteration, changes)
+                self.flat_direction(n, &matrices.flat, iteration, changes)
             } else {
                 self.full_direction(matrices, motion, iteration)
             };
@@ -254,9 +271,11 @@ impl Stage {
                 convergence.converged = false;
                 return convergence;
             }
-            convergence.change = self.take_direction(motion, tolerance);
+            convergence.change = self.change(n);
             changes = [changes[1], convergence.change];
-            if convergence.change < tolerance {
+            let near = convergence.change < tolerance;
+            self.take_direction(n, motion, near);
+            if near {
                 return convergence;
             }
             if iteration == MAX_ITERATIONS {
@@ -268,41 +287,57 @@ impl Stage {
 
     /// Forces and slopes at the present velocities; returns the highest pressure \[Pa\].
     #[inline(always)]
-    fn evaluate(&mut self, face: &Face, a: f64, motion: &Kinematics, factor: &[f64]) -> f64 {
-        let stride = self.slip.len();
-        let [sin, cos] = motion.sin_cos;
-        let (vx, vz) = self.v.split_at(stride);
-        let (carried_x, carried_z) = self.carried.split_at(stride);
-        for i in 0..stride {
-            let up = sin * vx[i] + cos * vz[i];
-            self.slip[i] = cos * vx[i] - sin * vz[i] + carried_x[i];
-            self.lift[i] = up + carried_z[i];
-            self.compression[i] = self.rest_compression[i] - a * up;
+    fn evaluate(
+        &mut self,
+        n: usize,
+        face: &Face,
+        a: f64,
+        motion: &Kinematics,
+        factor: &Aligned,
+    ) -> f64 {
+        let [sin, cos] = motion.sin_cos.map(Pack::splat);
+        let minus_a = Pack::splat(-a);
+        let (vx, vz) = self.v.packs()[..2 * n].split_at(n);
+        let (carried_x, carried_z) = self.carried.packs()[..2 * n].split_at(n);
+        let rest = &self.rest_compression.packs()[..n];
+        let slip = &mut self.placed.slip.packs_mut()[..n];
+        let lift = &mut self.placed.lift.packs_mut()[..n];
+        let compression = &mut self.placed.compression.packs_mut()[..n];
+        for k in 0..n {
+            let up = sin.mul_add(vx[k], cos * vz[k]);
+            slip[k] = cos.mul_add(vx[k], -(sin * vz[k])) + carried_x[k];
+            lift[k] = up + carried_z[k];
+            compression[k] = minus_a.mul_add(up, rest[k]);
         }
-        face.evaluate(&self.compression, a, &self.slip, &self.lift, factor, &mut self.traction)
+        face.evaluate(a, &self.placed, factor, &mut self.traction)
     }
 
     /// Modal velocities and the free face from the contact forces.
     #[inline(always)]
-    fn finish(&mut self, linear: &Linear, matrices: &StageMatrices, mut h: [f64; 2]) {
-        let (modes, stride, a) = (linear.modes(), linear.stride, matrices.a);
+    fn finish(&mut self, n: usize, linear: &Linear, matrices: &StageMatrices, mut h: [f64; 2]) {
+        let modes = self.rhs.packs().len();
+        let force = &self.force.packs()[..2 * n];
         for (j, h) in h.iter_mut().enumerate().take(linear.base.len()) {
-            *h += a * dense::dot(&matrices.q[2 * j * stride..2 * (j + 1) * stride], &self.force);
+            *h += matrices.a * dense::dot(&matrices.q.packs()[2 * j * n..2 * (j + 1) * n], force);
         }
         let y = times_2x2(&matrices.n_inverse, h);
-        self.scratch.fill(0.0);
-        dense::add_columns(&mut self.scratch, &linear.by_contact, &self.force);
+        let pushed = &mut self.scratch.packs_mut()[..modes];
+        dense::multiply(pushed, linear.by_contact.packs(), &self.force);
+        let (rhs, s) = (&self.rhs.packs()[..modes], &matrices.s.packs()[..modes]);
+        let w_end = &mut self.w_end.packs_mut()[..modes];
+        let a = Pack::splat(matrices.a);
         for m in 0..modes {
-            self.w_end[m] = self.rhs[m] + a * self.scratch[m];
+            w_end[m] = a.mul_add(pushed[m], rhs[m]);
         }
         for j in 0..linear.base.len() {
-            let coupling = &matrices.base_coupling[j * modes..(j + 1) * modes];
-            for (w, c) in self.w_end.iter_mut().zip(coupling) {
-                *w -= c * y[j];
+            let coupling = &matrices.base_coupling.packs()[j * modes..(j + 1) * modes];
+            let y = Pack::splat(-y[j]);
+            for m in 0..modes {
+                w_end[m] = coupling[m].mul_add(y, w_end[m]);
             }
         }
-        for (w, s) in self.w_end.iter_mut().zip(&matrices.s) {
-            *w *= s;
+        for m in 0..modes {
+            w_end[m] = w_end[m] * s[m];
         }
         for j in 0..linear.base.len() {
             self.base_velocity_end[j] = self.base_velocity[j] + y[j];

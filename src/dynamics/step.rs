@@ -219,14 +219,14 @@ impl Integrator {
         }
         self.statistics.steps += 1;
         self.step.take(linear, face, state, matrices, segment, from, h)?;
-        let error = self.step.error(linear, state, matrices, h);
+        let error = self.step.error;
         if !error.is_finite() {
             return Err(not_finite("the motion of the block"));
         }
         let road = segment.x.rate(from + h).abs();
         let floor = (MOVING_SHARE * linear.block_mass).sqrt() * road.max(1e-3);
         let remembered = state.scale * (-h / SCALE_MEMORY).exp();
-        let scale = remembered.max(floor).max(self.step.speed());
+        let scale = remembered.max(floor).max(self.step.speed);
         if error <= self.settings.tolerance * scale {
             state.scale = scale;
         }
@@ -240,7 +240,7 @@ impl Integrator {
         ledger.add(&middle, W * h);
         ledger.add(&end, D * h);
         self.step.powers[0] = end;
-        let compression = &self.step.stage.compression;
+        let compression = &self.step.stage.placed.compression;
         ledger.stored = energy::stored(linear, face, state, compression);
     }
 }

@@ -13,7 +13,7 @@ use super::state::State;
 use crate::contact::Face;
 use crate::drive::Segment;
 use crate::error::Fault;
-use crate::pack::Aligned;
+use crate::pack::{Aligned, Pack, LANES};
 use multiversion::multiversion;
 use std::f64::consts::SQRT_2;
 
@@ -48,6 +48,10 @@ pub struct TrBdf2 {
     inertia: [[f64; 2]; 3],
     /// Free face velocity at the end of the step, block frame.
     face_velocity: [f64; 2],
+    /// Size of the local error and root of twice the kinetic energy at the end \[kg^1/2 m/s\].
+    pub error: f64,
+    /// See `error`.
+    pub speed: f64,
     a: f64,
     /// Coefficient, stiffness factor and angle of the matrices used last.
     matrices_of: [f64; 3],
@@ -88,6 +92,8 @@ impl TrBdf2 {
             trial: State::new(linear),
             inertia: [[0.0; 2]; 3],
             face_velocity: [0.0; 2],
+            error: 0.0,
+            speed: 0.0,
             a: 0.0,
             matrices_of: [0.0; 3],
         }
@@ -124,7 +130,13 @@ impl TrBdf2 {
         self.a = matrices.a;
         let ends = [from, from + GAMMA * h, from + h].map(|s| kinematics(segment, s));
         self.inertia = [0, 1, 2].map(|k| inertia(linear, &ends[k]));
-        both_stages(self, linear, face, state, matrices, &ends, h)
+        // Compiled for the usual numbers of packs: loops over them are then none.
+        match linear.stride / LANES {
+            1 => both_stages::<1>(self, linear, face, state, matrices, &ends, h),
+            2 => both_stages::<2>(self, linear, face, state, matrices, &ends, h),
+            //3 => both_stages::<3>(self, linear, face, state, matrices, &ends, h),
+            _ => both_stages::<0>(self, linear, face, state, matrices, &ends, h),
+        }
     }
 
     /// Takes the height of the road off the gaps, where the nodes will stand at the end of the step.
@@ -157,15 +169,30 @@ impl TrBdf2 {
         state.base = trial.base;
         state.base_velocity = trial.base_velocity;
         state.base_acceleration = trial.base_acceleration;
-        let nodes = self.gap.len();
-        let (first, second) = (2.0 * self.a, 2.0 * self.a * (1.0 - GAMMA) / GAMMA);
-        for c in 0..2 * nodes {
-            let v = self.stage.v[c] - self.face_velocity[c / nodes];
-            // Slope at the end of the parabola through the three velocities of the step.
-            let rates = [(self.middle.v[c] - self.v[c]) / first, (v - self.middle.v[c]) / second];
-            self.dv[c] = rates[1] + (1.0 - GAMMA) * (rates[1] - rates[0]);
-            self.v[c] = v;
-            self.u[c] = self.stage.u[c] + self.a * self.v[c];
+        go_on(self);
+    }
+
+    /// Contact motion at the end of the step becomes that at the start of the next one.
+    #[inline(always)]
+    fn go_on(&mut self) {
+        let n = self.gap.packs().len();
+        let splat = Pack::splat;
+        let a = splat(self.a);
+        // Slope at the end of the parabola through the three velocities of the step.
+        let (first, second) = (splat(0.5 / self.a), splat(0.5 * GAMMA / (self.a * (1.0 - GAMMA))));
+        let face_velocity = self.face_velocity.map(splat);
+        let (u, v) = (&mut self.u.packs_mut()[..2 * n], &mut self.v.packs_mut()[..2 * n]);
+        let dv = &mut self.dv.packs_mut()[..2 * n];
+        let (u_star, v_end) = (&self.stage.u.packs()[..2 * n], &self.stage.v.packs()[..2 * n]);
+        let middle = &self.middle.v.packs()[..2 * n];
+        for axis in 0..2 {
+            for k in axis * n..(axis + 1) * n {
+                let end = v_end[k] - face_velocity[axis];
+                let rates = [(middle[k] - v[k]) * first, (end - middle[k]) * second];
+                dv[k] = splat(1.0 - GAMMA).mul_add(rates[1] - rates[0], rates[1]);
+                v[k] = end;
+                u[k] = a.mul_add(end, u_star[k]);
+            }
         }
     }
 
@@ -173,36 +200,52 @@ impl TrBdf2 {
     #[inline(always)]
     fn begin_first_stage(
         &mut self,
+        n: usize,
         linear: &Linear,
         state: &State,
         matrices: &StageMatrices,
         ends: &[Kinematics; 3],
     ) {
-        let (modes, a) = (linear.modes(), matrices.a);
+        let (modes, a) = (linear.omega2.packs().len(), matrices.a);
         let stage = &mut self.stage;
-        let inertia = self.inertia[0];
+        let by = Pack::splat(a);
+        let [ix, iz] = self.inertia[0].map(Pack::splat);
+        let (gx, gz) = (&linear.coupling[0].packs()[..modes], &linear.coupling[1].packs()[..modes]);
+        let (z, w) = (&state.z.packs()[..modes], &state.w.packs()[..modes]);
+        let dw = &state.dw.packs()[..modes];
+        let z_star = &mut stage.z.packs_mut()[..modes];
+        let w_star = &mut stage.w.packs_mut()[..modes];
         for m in 0..modes {
-            stage.z[m] = state.z[m] + a * state.w[m];
-            stage.w[m] = state.w[m] + a * (state.dw[m] - linear.coupling_along(m, inertia));
+            z_star[m] = by.mul_add(w[m], z[m]);
+            let rate = dw[m] - gx[m].mul_add(ix, gz[m] * iz);
+            w_star[m] = by.mul_add(rate, w[m]);
         }
         for (b, branch) in linear.branches.iter().enumerate() {
+            let ratio = Pack::splat(a / branch.time);
+            let y = &state.y.packs()[b * modes..(b + 1) * modes];
+            let y_star = &mut stage.y.packs_mut()[b * modes..(b + 1) * modes];
             for m in 0..modes {
-                let at = b * modes + m;
-                stage.y[at] = state.y[at] + a * (state.z[m] - state.y[at]) / branch.time;
+                y_star[m] = ratio.mul_add(z[m] - y[m], y[m]);
             }
         }
         for j in 0..linear.base.len() {
             stage.base[j] = state.base[j] + a * state.base_velocity[j];
             stage.base_velocity[j] = state.base_velocity[j] + a * state.base_acceleration[j];
         }
-        let nodes = linear.stride;
+        // First guess: as if the acceleration stayed.
         let face_velocity = free_face_velocity(linear, &ends[0], &state.base_velocity);
         let face_acceleration = free_face_velocity(linear, &ends[0], &state.base_acceleration);
-        for c in 0..2 * nodes {
-            stage.u[c] = self.u[c] + a * self.v[c];
-            // First guess: as if the acceleration stayed.
-            let acceleration = self.dv[c] + face_acceleration[c / nodes];
-            stage.v[c] = self.v[c] + face_velocity[c / nodes] + 2.0 * a * acceleration;
+        let (u, v) = (&self.u.packs()[..2 * n], &self.v.packs()[..2 * n]);
+        let dv = &self.dv.packs()[..2 * n];
+        let u_star = &mut stage.u.packs_mut()[..2 * n];
+        let guess = &mut stage.v.packs_mut()[..2 * n];
+        let twice = Pack::splat(2.0 * a);
+        for axis in 0..2 {
+            let carried = Pack::splat(face_velocity[axis] + 2.0 * a * face_acceleration[axis]);
+            for k in axis * n..(axis + 1) * n {
+                u_star[k] = by.mul_add(v[k], u[k]);
+                guess[k] = twice.mul_add(dv[k], v[k] + carried);
+            }
         }
     }
 
@@ -210,21 +253,28 @@ impl TrBdf2 {
     #[inline(always)]
     fn end_first_stage(
         &mut self,
+        n: usize,
         linear: &Linear,
         matrices: &StageMatrices,
         ends: &[Kinematics; 3],
     ) {
-        let (modes, nodes, a) = (linear.modes(), linear.stride, matrices.a);
+        let (modes, a) = (linear.omega2.packs().len(), matrices.a);
         let (stage, middle) = (&self.stage, &mut self.middle);
+        let (by, per) = (Pack::splat(a), Pack::splat(1.0 / a));
+        let (z_star, w_star) = (&stage.z.packs()[..modes], &stage.w.packs()[..modes]);
+        let w_end = &stage.w_end.packs()[..modes];
+        let (w, dw) = (&mut middle.w.packs_mut()[..modes], &mut middle.dw.packs_mut()[..modes]);
         for m in 0..modes {
-            middle.w[m] = stage.w_end[m];
-            middle.dw[m] = (stage.w_end[m] - stage.w[m]) / a;
+            w[m] = w_end[m];
+            dw[m] = (w_end[m] - w_star[m]) * per;
         }
         for (b, branch) in linear.branches.iter().enumerate() {
+            let rate = Pack::splat(1.0 / (branch.time + a));
+            let y_star = &stage.y.packs()[b * modes..(b + 1) * modes];
+            let dy = &mut middle.dy.packs_mut()[b * modes..(b + 1) * modes];
             for m in 0..modes {
-                let z = stage.z[m] + a * stage.w_end[m];
-                let y = (stage.y[b * modes + m] + a / branch.time * z) / (1.0 + a / branch.time);
-                middle.dy[b * modes + m] = (y - stage.y[b * modes + m]) / a;
+                // ẏ at the end of the implicit stage for y = y* + a ẏ.
+                dy[m] = rate * (by.mul_add(w_end[m], z_star[m]) - y_star[m]);
             }
         }
         for j in 0..linear.base.len() {
@@ -232,8 +282,12 @@ impl TrBdf2 {
             middle.base_acceleration[j] = (stage.base_velocity_end[j] - stage.base_velocity[j]) / a;
         }
         let face_velocity = free_face_velocity(linear, &ends[1], &stage.base_velocity_end);
-        for (c, (own, v)) in middle.v.iter_mut().zip(&stage.v).enumerate() {
-            *own = v - face_velocity[c / nodes];
+        let (own, v) = (&mut middle.v.packs_mut()[..2 * n], &stage.v.packs()[..2 * n]);
+        for axis in 0..2 {
+            let carried = Pack::splat(face_velocity[axis]);
+            for k in axis * n..(axis + 1) * n {
+                own[k] = v[k] - carried;
+            }
         }
         if self.keep_power {
             self.powers[1] = energy::power(linear, stage, &ends[1]);
@@ -242,51 +296,73 @@ impl TrBdf2 {
 
     /// Explicit part of the BDF2-like stage to t + h.
     #[inline(always)]
-    fn begin_second_stage(&mut self, linear: &Linear, state: &State, h: f64) {
-        let (modes, nodes, weight) = (linear.modes(), linear.stride, W * h);
+    fn begin_second_stage(&mut self, n: usize, linear: &Linear, state: &State, h: f64) {
+        let modes = linear.omega2.packs().len();
         let (stage, middle) = (&mut self.stage, &self.middle);
-        let inertia_start = self.inertia[0];
+        let weight = Pack::splat(W * h);
+        let [ix, iz] = self.inertia[0].map(Pack::splat);
+        let (gx, gz) = (&linear.coupling[0].packs()[..modes], &linear.coupling[1].packs()[..modes]);
+        let (z, w) = (&state.z.packs()[..modes], &state.w.packs()[..modes]);
+        let dw = &state.dw.packs()[..modes];
+        let (w_mid, dw_mid) = (&middle.w.packs()[..modes], &middle.dw.packs()[..modes]);
+        let z_star = &mut stage.z.packs_mut()[..modes];
+        let w_star = &mut stage.w.packs_mut()[..modes];
         for m in 0..modes {
-            let dw = state.dw[m] - linear.coupling_along(m, inertia_start);
-            stage.z[m] = state.z[m] + weight * (state.w[m] + middle.w[m]);
-            stage.w[m] = state.w[m] + weight * (dw + middle.dw[m]);
+            let rate = dw[m] - gx[m].mul_add(ix, gz[m] * iz);
+            z_star[m] = weight.mul_add(w[m] + w_mid[m], z[m]);
+            w_star[m] = weight.mul_add(rate + dw_mid[m], w[m]);
         }
         for (b, branch) in linear.branches.iter().enumerate() {
+            let per_time = Pack::splat(1.0 / branch.time);
+            let y = &state.y.packs()[b * modes..(b + 1) * modes];
+            let dy_mid = &middle.dy.packs()[b * modes..(b + 1) * modes];
+            let y_star = &mut stage.y.packs_mut()[b * modes..(b + 1) * modes];
             for m in 0..modes {
-                let at = b * modes + m;
-                let dy = (state.z[m] - state.y[at]) / branch.time;
-                stage.y[at] = state.y[at] + weight * (dy + middle.dy[at]);
+                y_star[m] = weight.mul_add(per_time.mul_add(z[m] - y[m], dy_mid[m]), y[m]);
             }
         }
         for j in 0..linear.base.len() {
-            stage.base[j] =
-                state.base[j] + weight * (state.base_velocity[j] + middle.base_velocity[j]);
+            let by = W * h;
+            stage.base[j] = state.base[j] + by * (state.base_velocity[j] + middle.base_velocity[j]);
             stage.base_velocity[j] = state.base_velocity[j]
-                + weight * (state.base_acceleration[j] + middle.base_acceleration[j]);
+                + by * (state.base_acceleration[j] + middle.base_acceleration[j]);
         }
-        for c in 0..2 * nodes {
-            stage.u[c] = self.u[c] + weight * (self.v[c] + middle.v[c]);
-            // First guess: the change of the first stage goes on.
-            stage.v[c] += (1.0 - GAMMA) / GAMMA * (middle.v[c] - self.v[c]);
+        // First guess: the change of the first stage goes on.
+        let (u, v) = (&self.u.packs()[..2 * n], &self.v.packs()[..2 * n]);
+        let v_mid = &middle.v.packs()[..2 * n];
+        let u_star = &mut stage.u.packs_mut()[..2 * n];
+        let guess = &mut stage.v.packs_mut()[..2 * n];
+        let on = Pack::splat((1.0 - GAMMA) / GAMMA);
+        for k in 0..2 * n {
+            u_star[k] = weight.mul_add(v[k] + v_mid[k], u[k]);
+            guess[k] = on.mul_add(v_mid[k] - v[k], guess[k]);
         }
     }
 
     /// The state at the end of the step.
     #[inline(always)]
     fn write_trial(&mut self, linear: &Linear, end: &Kinematics) {
-        let (modes, a) = (linear.modes(), self.a);
+        let (modes, a) = (linear.omega2.packs().len(), self.a);
         let (stage, trial) = (&self.stage, &mut self.trial);
+        let (by, per) = (Pack::splat(a), Pack::splat(1.0 / a));
+        let [ix, iz] = self.inertia[2].map(Pack::splat);
+        let (gx, gz) = (&linear.coupling[0].packs()[..modes], &linear.coupling[1].packs()[..modes]);
+        let (z_star, w_star) = (&stage.z.packs()[..modes], &stage.w.packs()[..modes]);
+        let w_end = &stage.w_end.packs()[..modes];
+        let (z, w) = (&mut trial.z.packs_mut()[..modes], &mut trial.w.packs_mut()[..modes]);
+        let dw = &mut trial.dw.packs_mut()[..modes];
         for m in 0..modes {
-            let coupling = linear.coupling_along(m, self.inertia[2]);
-            trial.z[m] = stage.z[m] + a * stage.w_end[m];
-            trial.w[m] = stage.w_end[m];
-            trial.dw[m] = (stage.w_end[m] - stage.w[m]) / a + coupling;
+            z[m] = by.mul_add(w_end[m], z_star[m]);
+            w[m] = w_end[m];
+            dw[m] = gx[m].mul_add(ix, gz[m].mul_add(iz, (w_end[m] - w_star[m]) * per));
         }
         for (b, branch) in linear.branches.iter().enumerate() {
             let ratio = a / branch.time;
+            let (ratio, share) = (Pack::splat(ratio), Pack::splat(1.0 / (1.0 + ratio)));
+            let y_star = &stage.y.packs()[b * modes..(b + 1) * modes];
+            let y = &mut trial.y.packs_mut()[b * modes..(b + 1) * modes];
             for m in 0..modes {
-                let at = b * modes + m;
-                trial.y[at] = (stage.y[at] + ratio * trial.z[m]) / (1.0 + ratio);
+                y[m] = ratio.mul_add(z[m], y_star[m]) * share;
             }
         }
         for j in 0..linear.base.len() {
@@ -299,29 +375,34 @@ impl TrBdf2 {
     }
 
     /// Size of the local error in the energy norm \[kg^1/2 m/s\], with what is stiff filtered out as
-    /// the implicit stage would damp it.
-    pub fn error(&self, linear: &Linear, state: &State, matrices: &StageMatrices, h: f64) -> f64 {
-        let mut sum = 0.0;
-        for m in 0..linear.modes() {
-            let at = |k: usize| linear.coupling_along(m, self.inertia[k]);
-            let z = h
-                * (ERROR[0] * state.w[m]
-                    + ERROR[1] * self.middle.w[m]
-                    + ERROR[2] * self.trial.w[m]);
-            let w = h
-                * (ERROR[0] * (state.dw[m] - at(0))
-                    + ERROR[1] * self.middle.dw[m]
-                    + ERROR[2] * (self.trial.dw[m] - at(2)));
-            let w = matrices.s[m] * (w - matrices.a_omega2[m] * z);
-            let z = z + matrices.a * w;
-            sum += w * w + linear.omega2[m] * z * z;
+    /// the implicit stage would damp it; and the root of twice the kinetic energy at the end of the step.
+    #[inline(always)]
+    fn judge(&mut self, linear: &Linear, state: &State, matrices: &StageMatrices, h: f64) {
+        let modes = linear.omega2.packs().len();
+        let a = Pack::splat(matrices.a);
+        let weight = ERROR.map(|weight| Pack::splat(h * weight));
+        // What the prescribed acceleration adds at the start and at the end.
+        let [sx, sz] = self.inertia[0].map(|along| Pack::splat(-h * ERROR[0] * along));
+        let [ex, ez] = self.inertia[2].map(|along| Pack::splat(-h * ERROR[2] * along));
+        let (ix, iz) = (sx + ex, sz + ez);
+        let (gx, gz) = (&linear.coupling[0].packs()[..modes], &linear.coupling[1].packs()[..modes]);
+        let (w, dw) = (&state.w.packs()[..modes], &state.dw.packs()[..modes]);
+        let (w_mid, dw_mid) = (&self.middle.w.packs()[..modes], &self.middle.dw.packs()[..modes]);
+        let (w_end, dw_end) = (&self.trial.w.packs()[..modes], &self.trial.dw.packs()[..modes]);
+        let (s, a_omega2) = (&matrices.s.packs()[..modes], &matrices.a_omega2.packs()[..modes]);
+        let omega2 = &linear.omega2.packs()[..modes];
+        let (mut error, mut speed) = (Pack::default(), Pack::default());
+        for m in 0..modes {
+            let of_z = weight[2].mul_add(w_end[m], weight[1].mul_add(w_mid[m], weight[0] * w[m]));
+            let of_w =
+                weight[2].mul_add(dw_end[m], weight[1].mul_add(dw_mid[m], weight[0] * dw[m]));
+            let of_w = gx[m].mul_add(ix, gz[m].mul_add(iz, of_w));
+            let of_w = s[m] * (-a_omega2[m]).mul_add(of_z, of_w);
+            let of_z = a.mul_add(of_w, of_z);
+            error = of_w.mul_add(of_w, (omega2[m] * of_z).mul_add(of_z, error));
+            speed = w_end[m].mul_add(w_end[m], speed);
         }
-        sum.sqrt()
-    }
-
-    /// Root of twice the kinetic energy at the end of the step \[kg^1/2 m/s\].
-    pub fn speed(&self) -> f64 {
-        dense::dot(&self.trial.w, &self.trial.w).sqrt()
+        (self.error, self.speed) = (error.sum().sqrt(), speed.sum().sqrt());
     }
 
     fn count(&mut self, solved: Convergence, time: f64, a: f64) -> Result<(), Fault> {
@@ -343,18 +424,27 @@ impl TrBdf2 {
     "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-pub fn contact_motion(linear: &Linear, modal: &[f64], out: &mut [f64]) {
-    out.fill(0.0);
-    dense::add_columns(out, &linear.by_mode, modal);
+pub fn contact_motion(linear: &Linear, modal: &Aligned, out: &mut Aligned) {
+    dense::multiply(out.packs_mut(), linear.by_mode.packs(), modal);
 }
 
-/// The work of a step, compiled for several instruction sets of which the machine's best is taken;
-/// all give the same bits, because sums have a fixed order and fused operations are spelled out.
+/// [`TrBdf2::go_on`] for the instruction set at hand.
 #[multiversion(targets(
     "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
-fn both_stages(
+fn go_on(step: &mut TrBdf2) {
+    step.go_on();
+}
+
+/// The work of a step with `N` packs of nodes (0: as many as there are), compiled for several instruction sets
+/// of which the machine's best is taken; all give the same bits, because sums have a fixed order and fused
+/// operations are spelled out.
+#[multiversion(targets(
+    "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
+    "x86_64+avx2+fma+bmi1+bmi2"
+))]
+fn both_stages<const N: usize>(
     step: &mut TrBdf2,
     linear: &Linear,
     face: &Face,
@@ -363,26 +453,65 @@ fn both_stages(
     ends: &[Kinematics; 3],
     h: f64,
 ) -> Result<(), Fault> {
-    for ((gap, profile), worn) in step.gap.iter_mut().zip(&face.profile).zip(&state.worn) {
-        *gap = profile + worn;
+    // Without vectors to speak of, one version for all sizes: eight calls for a fused product are slow to compile,
+    // and nothing is won by unrolling them.
+    if !multiversion::target::target_cfg_f!(target_feature = "fma") {
+        return on_any_machine(step, linear, face, state, matrices, ends, h);
+    }
+    let n = if N == 0 { linear.stride / LANES } else { N };
+    stages_of(step, n, linear, face, state, matrices, ends, h)
+}
+
+/// [`both_stages`] for processors without fused products.
+#[inline(never)]
+fn on_any_machine(
+    step: &mut TrBdf2,
+    linear: &Linear,
+    face: &Face,
+    state: &State,
+    matrices: &StageMatrices,
+    ends: &[Kinematics; 3],
+    h: f64,
+) -> Result<(), Fault> {
+    stages_of(step, linear.stride / LANES, linear, face, state, matrices, ends, h)
+}
+
+/// Both stages with `n` packs of nodes, compiled for the instruction set of the caller.
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+fn stages_of(
+    step: &mut TrBdf2,
+    n: usize,
+    linear: &Linear,
+    face: &Face,
+    state: &State,
+    matrices: &StageMatrices,
+    ends: &[Kinematics; 3],
+    h: f64,
+) -> Result<(), Fault> {
+    let (profile, worn) = (&face.profile.packs()[..n], &state.worn.packs()[..n]);
+    let gap = &mut step.gap.packs_mut()[..n];
+    for k in 0..n {
+        gap[k] = profile[k] + worn[k];
     }
     step.raise_road(linear, face, state, &ends[2], h);
     // One place where a stage is solved: the solver is large, and inlined once.
     for (k, end) in ends[1..].iter().enumerate() {
         match k {
-            0 => step.begin_first_stage(linear, state, matrices, ends),
-            _ => step.begin_second_stage(linear, state, h),
+            0 => step.begin_first_stage(n, linear, state, matrices, ends),
+            _ => step.begin_second_stage(n, linear, state, h),
         }
         let factor = &state.friction_factor;
-        let solved = step.stage.solve(linear, face, matrices, end, &step.gap, factor);
+        let solved = step.stage.solve(n, linear, face, matrices, end, &step.gap, factor);
         step.count(solved, state.time, matrices.a)?;
         if k == 0 {
-            step.end_first_stage(linear, matrices, ends);
+            step.end_first_stage(n, linear, matrices, ends);
         }
     }
     if step.keep_power {
         step.powers[2] = energy::power(linear, &step.stage, &ends[2]);
     }
     step.write_trial(linear, &ends[2]);
+    step.judge(linear, state, matrices, h);
     Ok(())
 }

@@ -53,6 +53,15 @@ pub fn kind_name(kind: Kind) -> &'static str {
 pub fn problems(params: &Params) -> Vec<Problem> {
     let mut found: Vec<Problem> =
         table::specs().filter_map(|spec| value(spec, &(spec.get)(params))).collect();
+    let (points, along) = (params.solver.contact_points, params.solver.elements_along);
+    if along > 0 && points > 2 * along + 1 {
+        found.push(Problem::new(
+            "solver.contact_points",
+            points.to_string(),
+            format!("at most {}, the nodes of {along} elements along the face", 2 * along + 1),
+            "leave solver.elements_along at 0, or ask for fewer points",
+        ));
+    }
     if params.friction.mu_inf + params.friction.mu_drop < 0.0 {
         found.push(Problem::new(
             "friction.mu_inf + friction.mu_drop",

@@ -249,6 +249,8 @@ pub struct Solver {
     pub elements_along: usize,
     /// Elements over the height; 0: chosen from the block's size.
     pub elements_up: usize,
+    /// Contact points of the tread face; 0: chosen from the block's length, 1: the nodes of the elements.
+    pub contact_points: usize,
     /// Fixed-interface modes up to this frequency are kept \[Hz\].
     pub frequency_bound: f64,
     /// Error of a step relative to the motion's own scale \[-\].
@@ -264,6 +266,7 @@ impl Default for Solver {
         Self {
             elements_along: 0,
             elements_up: 0,
+            contact_points: 0,
             frequency_bound: 10e3,
             tolerance: 1e-2,
             max_step: 5e-6,

@@ -3,6 +3,7 @@
 
 use super::craig_bampton::CraigBampton;
 use super::fixed_interface::dense_pencil;
+use super::interface::Interface;
 use crate::error::Fault;
 use crate::fe::{assemble, FullModel};
 use crate::mesh::Mesh;
@@ -30,32 +31,45 @@ pub struct Reduction {
     pub shapes: DMatrix<f64>,
     /// Free degree of freedom of a node's x and z.
     pub dof: Vec<Option<usize>>,
-    /// Length of the tread face that each contact node stands for \[m\].
-    pub weights: Vec<f64>,
+    /// What stands for the tread face in contact.
+    pub interface: Interface,
 }
 
 impl Reduction {
-    /// Meshes, assembles, reduces and decouples; `bound` is λ = ω²ρ/E \[1/m²\] up to which
-    /// fixed-interface modes are kept.
+    /// Assembles, reduces and decouples; `bound` is λ = ω²ρ/E \[1/m²\] up to which fixed-interface modes are
+    /// kept, `points` the number of contact points, `None` for the nodes of the mesh.
     ///
     /// # Errors
     /// [`Fault::NotFinite`] if the mesh is degenerate.
     pub fn of_block(
         mesh: Mesh,
+        points: Option<usize>,
         poisson_ratio: f64,
         plane: Plane,
         bound: f64,
     ) -> Result<Self, Fault> {
         let full = assemble(&mesh, poisson_ratio, plane);
         let reduced = CraigBampton::reduce(&full, &mesh, bound)?;
-        Self::decouple(mesh, &full, &reduced)
+        match points {
+            None => Self::decouple(Interface::of_mesh(&mesh), mesh, &full, &reduced),
+            Some(points) => {
+                let interface = Interface::gauss_lobatto(&mesh, points);
+                let restricted = interface.restrict(&reduced, &mesh);
+                Self::decouple(interface, mesh, &full, &restricted)
+            }
+        }
     }
 
     /// Decouples a reduced model.
     ///
     /// # Errors
     /// [`Fault::NotFinite`] if the reduced mass is not positive definite.
-    pub fn decouple(mesh: Mesh, full: &FullModel, reduced: &CraigBampton) -> Result<Self, Fault> {
+    pub fn decouple(
+        interface: Interface,
+        mesh: Mesh,
+        full: &FullModel,
+        reduced: &CraigBampton,
+    ) -> Result<Self, Fault> {
         let (lambda, vectors) = dense_pencil(&reduced.stiffness, &reduced.mass)?;
         let shapes = &reduced.basis * &vectors;
         let coupling = std::array::from_fn(|r| {
@@ -69,14 +83,14 @@ impl Reduction {
             coupling,
             shapes,
             dof: full.dof.clone(),
-            weights: mesh.tread_face_weights(),
+            interface,
             mesh,
         })
     }
 
-    /// Number of contact nodes.
+    /// Number of contact nodes: nodes of the mesh or points between them.
     pub fn contact_nodes(&self) -> usize {
-        self.weights.len()
+        self.interface.points()
     }
 
     /// Number of modes.

@@ -3,6 +3,8 @@
 mod craig_bampton;
 mod decouple;
 mod fixed_interface;
+mod interface;
 
 pub use craig_bampton::CraigBampton;
 pub use decouple::Reduction;
+pub use interface::Interface;

@@ -79,7 +79,7 @@ impl Wearing<'_> {
             }
             jump = ds * (0.8 * (tolerance / local.max(1e-12)).sqrt()).clamp(0.3, 2.0);
         }
-        Ok(Worn { depth, x: block.reduction().mesh.x.clone(), error, jumps })
+        Ok(Worn { depth, x: block.reduction().interface.x.clone(), error, jumps })
     }
 
     /// Wears over `distance` \[m\] in full, cycle by cycle, the profile set every `every` \[s\].
@@ -88,7 +88,7 @@ impl Wearing<'_> {
     /// What stops the block.
     pub fn brute_force(&self, distance: f64) -> Result<Worn, Fault> {
         let mut block = self.block()?;
-        let x = block.reduction().mesh.x.clone();
+        let x = block.reduction().interface.x.clone();
         let mut depth = vec![0.0; x.len()];
         let scenario = self.scenario();
         block.initialize(0.0, scenario.pose(0.0))?;
@@ -116,7 +116,7 @@ impl Wearing<'_> {
 
     /// Mean depth per distance \[m/m\] of the settled vibration on a worn profile.
     fn rate(&self, block: &mut TreadBlock, depth: &[f64]) -> Result<Vec<f64>, Fault> {
-        let x = block.reduction().mesh.x.clone();
+        let x = block.reduction().interface.x.clone();
         let scenario = self.scenario();
         block.initialize(0.0, scenario.pose(0.0))?;
         block.set_worn(depth);
