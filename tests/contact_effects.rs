@@ -1,7 +1,8 @@
 //! Contact laws of the effects on the tread face: derivatives, signs, closed forms.
 
 use tread_block::contact::friction::Law;
-use tread_block::contact::{Face, Traction};
+use tread_block::contact::{Face, Placed, Traction};
+use tread_block::pack::Aligned;
 use tread_block::params::{Contact, Friction};
 
 /// One node of 1 mm² with the default laws; full contact from 5 kPa.
@@ -26,13 +27,13 @@ const A: f64 = 3e-6;
 
 fn evaluate(face: &Face, rest: f64, slip: f64, lift: f64) -> Traction {
     let mut out = Traction::new(1);
-    let node = |value: f64, padding: f64| {
-        let mut values = vec![padding; face.area.len()];
-        values[0] = value;
-        values
+    let node = |value: f64, padding: f64| Aligned::padded(&[value], face.area.len(), padding);
+    let placed = Placed {
+        compression: node(rest - A * lift, -1.0),
+        slip: node(slip, 0.0),
+        lift: node(lift, 0.0),
     };
-    let (compression, factor) = (node(rest - A * lift, -1.0), node(0.9, 1.0));
-    face.evaluate(&compression, A, &node(slip, 0.0), &node(lift, 0.0), &factor, &mut out);
+    face.evaluate(A, &placed, &node(0.9, 1.0), &mut out);
     out
 }
 

@@ -9,17 +9,11 @@ use crate::mesh::Mesh;
 use crate::params::{FrictionForm, Params, Plane};
 use crate::reduction::Reduction;
 
-/// Contact points of a block of [`REFERENCE_LENGTH`], unless given, less one; of others as the root of their
-/// length: between Gauss-Lobatto points at the edges, which need the resolution, the distance then is the
-/// same. See the convergence table in the book.
-const DEGREE: f64 = 12.0;
-/// Fewest contact points of that choice.
-const LEAST_POINTS: usize = 9;
-/// Elements along the face of a block of [`REFERENCE_LENGTH`], unless given; of others as the root of their length.
+/// Elements along the face of a block of [`REFERENCE_LENGTH`], unless given; of others as the cube
+/// root of their length, since the edges need the resolution. Measured against the independent
+/// solutions: see the convergence table in the book.
 const ELEMENTS_ALONG: f64 = 10.0;
-/// Elements along the face where its nodes are the contact points; of others as the cube root of their length.
-const ELEMENTS_OF_NODES: f64 = 10.0;
-/// Length that these hold for \[m\].
+/// Length that [`ELEMENTS_ALONG`] holds for \[m\].
 const REFERENCE_LENGTH: f64 = 15e-3;
 /// Height of an element \[m\], unless given.
 const ELEMENT_HEIGHT: f64 = 1.5e-3;
@@ -51,12 +45,10 @@ impl Shape {
             0 => (wanted.round() as usize).max(least),
             given => given,
         };
-        let size = block.length / REFERENCE_LENGTH;
-        let points = Self::points(params, size);
-        let along = match points {
-            None => ELEMENTS_OF_NODES * size.cbrt(),
-            Some(points) => (ELEMENTS_ALONG * size.sqrt()).max(0.5 * points as f64),
-        };
+        let points = Some(solver.contact_points).filter(|points| *points > 0);
+        // Elements that the polynomials through the points can be told apart on.
+        let along = (ELEMENTS_ALONG * (block.length / REFERENCE_LENGTH).cbrt())
+            .max(0.5 * solver.contact_points as f64);
         let omega = std::f64::consts::TAU * solver.frequency_bound;
         Self {
             length: block.length,
@@ -69,20 +61,6 @@ impl Shape {
             poisson_ratio: rubber.poisson_ratio,
             plane: rubber.plane,
             bound: omega * omega * rubber.density / rubber.young_modulus,
-        }
-    }
-
-    /// Contact points: as many as were asked for, or chosen from the length over [`REFERENCE_LENGTH`]. Who
-    /// chooses the elements means their nodes, and a texture wants points as dense in the middle of the face as
-    /// at its edges.
-    fn points(params: &Params, size: f64) -> Option<usize> {
-        let nodes =
-            params.solver.elements_along > 0 || params.effect.road_texture.texture().is_some();
-        match params.solver.contact_points {
-            0 if nodes => None,
-            0 => Some(((DEGREE * size.sqrt()).round() as usize + 1).max(LEAST_POINTS)),
-            1 => None,
-            points => Some(points),
         }
     }
 

@@ -53,15 +53,7 @@ pub fn kind_name(kind: Kind) -> &'static str {
 pub fn problems(params: &Params) -> Vec<Problem> {
     let mut found: Vec<Problem> =
         table::specs().filter_map(|spec| value(spec, &(spec.get)(params))).collect();
-    let (points, along) = (params.solver.contact_points, params.solver.elements_along);
-    if along > 0 && points > 2 * along + 1 {
-        found.push(Problem::new(
-            "solver.contact_points",
-            points.to_string(),
-            format!("at most {}, the nodes of {along} elements along the face", 2 * along + 1),
-            "leave solver.elements_along at 0, or ask for fewer points",
-        ));
-    }
+    found.extend(contact_points(params.solver.contact_points, params.solver.elements_along));
     if params.friction.mu_inf + params.friction.mu_drop < 0.0 {
         found.push(Problem::new(
             "friction.mu_inf + friction.mu_drop",
@@ -98,4 +90,17 @@ pub fn checked(params: &Params) -> Result<(), Fault> {
     } else {
         Err(Fault::Invalid(found))
     }
+}
+
+/// What is wrong with a number of contact points on `along` elements (0: chosen), if anything.
+fn contact_points(points: usize, along: usize) -> Option<Problem> {
+    let most = if along == 0 { 60 } else { 2 * along + 1 };
+    (points > 0 && !(4..=most).contains(&points)).then(|| {
+        Problem::new(
+            "solver.contact_points",
+            points.to_string(),
+            format!("0, or 4 to {most}: no more than there are nodes along the face"),
+            "leave it at 0 for the nodes of the elements, or solver.elements_along at 0",
+        )
+    })
 }

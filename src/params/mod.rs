@@ -249,7 +249,7 @@ pub struct Solver {
     pub elements_along: usize,
     /// Elements over the height; 0: chosen from the block's size.
     pub elements_up: usize,
-    /// Contact points of the tread face; 0: chosen from the block's length, 1: the nodes of the elements.
+    /// Contact points of the tread face; 0: the nodes of the elements.
     pub contact_points: usize,
     /// Fixed-interface modes up to this frequency are kept \[Hz\].
     pub frequency_bound: f64,
