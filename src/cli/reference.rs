@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::output::{self, Done, Stop};
 use crate::block::{INPUTS, OUTPUTS};
+use crate::error::number;
 use crate::params::{table, Kind, ParamSpec, Params, Variability};
-use crate::scenario::config::{KEYS, TEXT_KEYS};
+use crate::scenario::run_table::{KEYS, TEXT_KEYS};
 
 /// What was typed.
 #[derive(Debug, clap::Args)]
@@ -76,7 +77,7 @@ fn parameters() -> String {
 
 fn parameter_row(spec: &ParamSpec, defaults: &Params) -> String {
     let (unit, allowed) = match spec.kind {
-        Kind::Real { unit, min, max, .. } => (unit, format!("{min:e} to {max:e}")),
+        Kind::Real { unit, min, max, .. } => (unit, format!("{} to {}", number(min), number(max))),
         Kind::Integer { min, max } => ("1", format!("{min} to {max}")),
         Kind::Enumeration { items, .. } => {
             let items: Vec<String> =
@@ -103,14 +104,14 @@ fn run_files() -> String {
          | key | unit | default | allowed | meaning |\n|---|---|---|---|---|\n",
     );
     for key in KEYS {
-        let default = key.default.map_or(String::new(), |d| format!("`{}`", output::number(d)));
+        let default = key.default.map_or(String::new(), |d| format!("`{}`", number(d)));
         let _ = writeln!(
             page,
             "| `run.{}` | {} | {default} | {} to {} | {} |",
             key.name,
             key.unit,
-            output::number(key.min),
-            output::number(key.max),
+            number(key.min),
+            number(key.max),
             escape(key.doc)
         );
     }
