@@ -1,5 +1,7 @@
 //! `tread reference`: pages of the book that are made from the code and so cannot drift from it.
 
+mod formats;
+
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -24,6 +26,8 @@ pub fn run(arguments: &Arguments, command: clap::Command) -> Result<Done, Stop> 
         ("parameters.md", parameters()),
         ("run-files.md", run_files()),
         ("signals.md", signals()),
+        ("campaigns.md", formats::campaigns()),
+        ("diagnosis.md", formats::diagnosis()),
     ];
     for (name, text) in pages {
         let file = arguments.folder.join(name);
