@@ -75,7 +75,7 @@ coverage: ## Lines that the Rust tests reach, by module, in out/coverage (TESTS=
 	@packaging/coverage.sh $(TESTS)
 
 docs: ## The book in docs/book (mdbook, warnings are errors) and the Rust documentation
-	@packaging/setup.sh build
+	@packaging/setup.sh build docs
 	@docs/build.sh
 	@RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
 

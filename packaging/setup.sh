@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Installs what the project needs; quick when there is nothing to do.
 #
-#   packaging/setup.sh [build] [run] [test] [bench] [browser]      (default: build run)
+#   packaging/setup.sh [build] [run] [test] [docs] [bench] [browser]      (default: build run)
 #
 #   build  C compiler, libclang, zig: to build the FMU
 #   run    fmpy, numpy, matplotlib: the demo and the studies
+#   test   pytest and the importers that judge the FMU, valgrind, CalculiX to compare with
+#   docs   mdbook (a part of test, too)
 #   bench  SUNDIALS, which the benches compare with
 #   browser  Debian's chromium, which looks at reports
-#   test   pytest and the importers that judge the FMU, valgrind, CalculiX to compare with
 #
 # Python packages go into .venv of this checkout. The distribution is asked (apt-get, as root or with
 # sudo) only for what no wheel serves: C compiler, Python's venv module, valgrind, CalculiX.
@@ -98,6 +99,7 @@ for part in "${wanted[@]}"; do
         run) pip_install packaging/requirements.txt ;;
         test)
             pip_install packaging/requirements-test.txt
+            pip_install packaging/requirements-docs.txt
             cofmupy || { say "cofmupy cannot be had: its test will be skipped"; rm -rf .venv/cofmupy; }
             command -v objdump >/dev/null || apt binutils
             # Without root the other tests are worth running, too. valgrind wants the symbols of a C library that
@@ -107,8 +109,9 @@ for part in "${wanted[@]}"; do
             command -v ccx >/dev/null || packaging/apt.sh calculix-ccx ||
                 say "CalculiX cannot be had: make test will count that as a failure"
             ;;
+        docs) pip_install packaging/requirements-docs.txt ;;
         browser) command -v chromium >/dev/null || apt chromium ;;
         bench) [ -e /usr/include/cvode/cvode.h ] || apt libsundials-dev ;;
-        *) fail "unknown part $part: build, run, test, bench, browser" ;;
+        *) fail "unknown part $part: build, run, test, docs, bench, browser" ;;
     esac
 done
