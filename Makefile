@@ -75,12 +75,13 @@ coverage: ## Lines that the Rust tests reach, by module, in out/coverage (TESTS=
 	@packaging/coverage.sh $(TESTS)
 
 docs: ## The book in docs/book (mdbook, warnings are errors) and the Rust documentation
+	@packaging/setup.sh build docs
 	@docs/build.sh
 	@RUSTDOCFLAGS="-D warnings" cargo doc --no-deps
 
-pictures: ## The README's pictures: limit cycle and gap report (chromium), in docs/src/images
+pictures: ## Pictures of README and book, in docs/src/images (PARTS="demo gap"; also convergence chain bench)
 	@packaging/setup.sh build run
-	@docs/pictures.sh
+	@docs/pictures.sh $(PARTS)
 
 clean: ## Remove what was built (keeps .venv)
 	@rm -rf target out

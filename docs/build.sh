@@ -1,10 +1,17 @@
 #!/usr/bin/env bash
 # Builds the book: reference pages from the code, then HTML by mdbook; a warning is an error. Links and anchors
-# are checked by tests/docs.rs, which needs no mdbook.
+# are checked by tests/docs, which needs no mdbook.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-cargo run --quiet --release --bin tread -- reference docs/src/reference
-mdbook=$(command -v mdbook || echo out/tools/bin/mdbook)
+# A `tread` that is already there may write the pages (TREAD=...).
+if [ -x "${TREAD:-}" ]; then
+    "$TREAD" reference docs/src/reference
+else
+    cargo run --quiet --release --bin tread -- reference docs/src/reference
+fi
+# From the project's environment (packaging/setup.sh test), the system, or built once.
+mdbook=.venv/bin/mdbook
+[ -x "$mdbook" ] || mdbook=$(command -v mdbook || echo out/tools/bin/mdbook)
 if [ ! -x "$mdbook" ]; then
     echo "docs: building mdbook into out/tools, once (some minutes)" >&2
     # Unoptimised and without its server: built in a tenth of the time, and fast enough for this book.

@@ -1,7 +1,7 @@
-# Environment for cargo, sourced by the scripts: where libclang is, if it came as a wheel.
-if [ -f .venv/libclang.env ]; then
-    . .venv/libclang.env
-fi
+# What the scripts share; they source it in the checkout's folder.
+
+# Numbers have a point in every country: awk would read 1.5 as 1 where people write 1,5.
+export LC_ALL=C.UTF-8
 export PIP_DISABLE_PIP_VERSION_CHECK=1
 
 # Can zig link for glibc 2.17 here? TREAD_NO_ZIG=1 asks for this machine's own linker.

@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
 # Installs what the project needs; quick when there is nothing to do.
 #
-#   packaging/setup.sh [build] [run] [test] [bench] [browser]      (default: build run)
+#   packaging/setup.sh [build] [run] [test] [docs] [bench] [browser]      (default: build run)
 #
 #   build  C compiler, libclang, zig: to build the FMU
 #   run    fmpy, numpy, matplotlib: the demo and the studies
+#   test   pytest and the importers that judge the FMU, valgrind, CalculiX to compare with
+#   docs   mdbook (a part of test, too)
 #   bench  SUNDIALS, which the benches compare with
 #   browser  Debian's chromium, which looks at reports
-#   test   pytest and the importers that judge the FMU, valgrind, CalculiX to compare with
 #
 # Python packages go into .venv of this checkout. The distribution is asked (apt-get, as root or with
 # sudo) only for what no wheel serves: C compiler, Python's venv module, valgrind, CalculiX.
@@ -27,18 +28,19 @@ command -v cc >/dev/null || apt gcc libc6-dev
 
 python() {
     local candidate
-    for candidate in python3 python3.13 python3.12 python3.11; do
+    for candidate in python3 python3.14 python3.13 python3.12 python3.11; do
         if "$candidate" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
             echo "$candidate"
             return
         fi
     done
-    fail "Python 3.11 or newer is missing"
+    fail "Python 3.11 or newer is missing: install it with its venv module, as python3 or python3.11 to python3.14"
 }
 
-if [ ! -x .venv/bin/python ]; then
+# Also where an earlier try was broken off before pip was there.
+if ! .venv/bin/python -c 'import pip' 2>/dev/null; then
     base=$(python)
-    "$base" -c 'import venv, ensurepip' 2>/dev/null || apt python3-venv
+    "$base" -c 'import venv, ensurepip' 2>/dev/null || apt "$base-venv"
     say "making .venv"
     "$base" -m venv .venv
 fi
@@ -52,28 +54,31 @@ pip_install() {
     cp "$file" "$stamp"
 }
 
+# One that can be used as it is: library and clang's own headers, which other packages bring apart.
 has_libclang() {
     [ -n "${LIBCLANG_PATH:-}" ] && return
-    ldconfig -p 2>/dev/null | grep -qE 'libclang(-[0-9.]+)?\.so' && return
     # Not libclang-cpp, which is another library: compilers bring it alone.
-    compgen -G '/usr/lib/llvm-*/lib/libclang.so*' >/dev/null || compgen -G '/usr/lib/llvm-*/lib/libclang-[0-9]*.so*' >/dev/null
+    compgen -G '/usr/lib*/llvm-*/lib/libclang.so*' >/dev/null || compgen -G '/usr/lib*/llvm-*/lib/libclang-[0-9]*.so*' >/dev/null ||
+        compgen -G '/usr/lib*/libclang.so*' >/dev/null || return
+    compgen -G '/usr/lib*/llvm-*/lib/clang/*/include/stddef.h' >/dev/null || compgen -G '/usr/lib*/clang/*/include/stddef.h' >/dev/null
 }
 
+# Where there is none, a wheel's, told to cargo alone: plain `cargo test` and editors find it, too.
 libclang() {
-    [ -f .venv/libclang.env ] && return
-    if ! has_libclang; then
-        say "installing libclang into .venv"
-        .venv/bin/python -m pip install --quiet libclang >&2
-        local folder
-        folder=$(.venv/bin/python -c 'import clang, os; print(os.path.join(list(clang.__path__)[0], "native"))')
-        {
-            echo "export LIBCLANG_PATH='$folder'"
-            # The wheel brings no headers of the compiler; gcc's serve.
-            echo "export BINDGEN_EXTRA_CLANG_ARGS='-I$(cc -print-file-name=include)'"
-        } > .venv/libclang.env
-    else
-        : > .venv/libclang.env
-    fi
+    local config=.cargo/config.toml
+    { has_libclang || grep -qs LIBCLANG_PATH "$config"; } && return
+    say "installing libclang into .venv"
+    .venv/bin/python -m pip install --quiet libclang >&2
+    local folder
+    folder=$(.venv/bin/python -c 'import clang, os; print(os.path.relpath(os.path.join(list(clang.__path__)[0], "native")))')
+    mkdir -p .cargo
+    {
+        echo '[env]'
+        # Relative to the checkout, which may be moved.
+        echo "LIBCLANG_PATH = { value = \"$folder\", relative = true }"
+        # The wheel brings no headers of the compiler; gcc's serve.
+        echo "BINDGEN_EXTRA_CLANG_ARGS = \"-I$(cc -print-file-name=include)\""
+    } >> "$config"
 }
 
 # cofmupy pins old versions of what the others want new: an environment inside the environment.
@@ -94,13 +99,19 @@ for part in "${wanted[@]}"; do
         run) pip_install packaging/requirements.txt ;;
         test)
             pip_install packaging/requirements-test.txt
+            pip_install packaging/requirements-docs.txt
             cofmupy || { say "cofmupy cannot be had: its test will be skipped"; rm -rf .venv/cofmupy; }
-            command -v valgrind >/dev/null || apt valgrind
             command -v objdump >/dev/null || apt binutils
-            command -v ccx >/dev/null || apt calculix-ccx
+            # Without root the other tests are worth running, too. valgrind wants the symbols of a C library that
+            # some distributions strip.
+            command -v valgrind >/dev/null || packaging/apt.sh valgrind libc6-dbg ||
+                say "valgrind cannot be had: its tests will be skipped"
+            command -v ccx >/dev/null || packaging/apt.sh calculix-ccx ||
+                say "CalculiX cannot be had: make test will count that as a failure"
             ;;
+        docs) pip_install packaging/requirements-docs.txt ;;
         browser) command -v chromium >/dev/null || apt chromium ;;
         bench) [ -e /usr/include/cvode/cvode.h ] || apt libsundials-dev ;;
-        *) fail "unknown part $part: build, run, test, bench, browser" ;;
+        *) fail "unknown part $part: build, run, test, docs, bench, browser" ;;
     esac
 done

@@ -2,7 +2,7 @@
 # Every test, in named stages; ends with "N passed, N failed".
 #
 #   packaging/test.sh               all stages
-#   packaging/test.sh lint rust     some of them: lint docs rust fmu python
+#   packaging/test.sh lint rust     some of them: lint docs rust book fmu python
 set -uo pipefail
 cd "$(dirname "$0")/.."
 . packaging/env.sh
@@ -69,8 +69,13 @@ stage_rust() {
     runner rust cargo test --quiet --no-fail-fast
 }
 
+stage_book() {
+    # The command line was built by the Rust tests.
+    check "the book without a warning" docs/build.sh
+}
+
 stage_fmu() {
-    # The command line was built by the Rust tests; the library is built for old systems.
+    # The library is built for old systems.
     check "build the FMU" packaging/linux64.sh
     check "exports, glibc, dependencies" packaging/check.sh out/binaries/linux64/TreadBlock.so
     check "build the chain's FMUs" packaging/chain.sh
@@ -89,7 +94,7 @@ stage_python() {
 
 export TREAD=${TREAD:-target/debug/tread}
 stages=("$@")
-[ ${#stages[@]} -gt 0 ] || stages=(lint docs rust fmu python)
+[ ${#stages[@]} -gt 0 ] || stages=(lint docs rust book fmu python)
 for stage in "${stages[@]}"; do
     "stage_$stage"
 done

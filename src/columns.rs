@@ -13,19 +13,18 @@ const MOST: usize = 20;
 /// # Errors
 /// [`Fault::File`], or all missing columns and unreadable cells (at most 20).
 pub fn read(path: &Path, names: &[&str], remedy: &str) -> Result<Vec<Vec<f64>>, Fault> {
-    let fault = |reason: String| Fault::File { path: path.display().to_string(), reason };
     let mut reader = csv::ReaderBuilder::new()
         .flexible(true)
         .trim(csv::Trim::All)
         .from_path(path)
-        .map_err(|e| fault(reason(&e)))?;
-    let header = reader.headers().map_err(|e| fault(reason(&e)))?.clone();
+        .map_err(|e| fault(path, &e))?;
+    let header = reader.headers().map_err(|e| fault(path, &e))?.clone();
     let file = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
     let places = places(&file, names, &header, remedy)?;
     let mut columns = vec![Vec::new(); names.len()];
     let mut problems = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|e| fault(reason(&e)))?;
+        let record = record.map_err(|e| fault(path, &e))?;
         let line = record.position().map_or(0, csv::Position::line);
         for ((column, &place), name) in columns.iter_mut().zip(&places).zip(names) {
             let cell = record.get(place).unwrap_or("missing");
@@ -50,7 +49,10 @@ pub fn read(path: &Path, names: &[&str], remedy: &str) -> Result<Vec<Vec<f64>>, 
     }
 }
 
-/// Where in the header each name stands; all missing ones are told at once.
+/// Most missing columns told by name.
+const MOST_NAMES: usize = 6;
+
+/// Where in the header each name stands; all missing ones are one problem.
 fn places(
     file: &str,
     names: &[&str],
@@ -58,30 +60,40 @@ fn places(
     remedy: &str,
 ) -> Result<Vec<usize>, Fault> {
     let place = |name: &str| header.iter().position(|h| h.trim_start_matches('\u{feff}') == name);
-    let missing: Vec<Problem> = names
-        .iter()
-        .filter(|name| place(name).is_none())
-        .map(|name| {
-            let found = header.iter().take(8).collect::<Vec<_>>().join(",");
-            Problem::new(
-                format!("{file}: column {name}"),
-                format!("missing; the header begins with {found:?}"),
-                "a column of that name, separated by commas",
-                remedy,
-            )
-        })
-        .collect();
+    let missing: Vec<&str> = names.iter().copied().filter(|name| place(name).is_none()).collect();
     if missing.is_empty() {
-        Ok(names.iter().filter_map(|name| place(name)).collect())
-    } else {
-        Err(Fault::Invalid(missing))
+        return Ok(names.iter().filter_map(|name| place(name)).collect());
+    }
+    if header.is_empty() {
+        let allowed = format!("a header with {}, and numbers below it", listed(names));
+        return Err(Fault::one(Problem::new(file, "an empty file", allowed, remedy)));
+    }
+    let found: Vec<&str> = header.iter().collect();
+    let plural = if missing.len() == 1 { "" } else { "s" };
+    Err(Fault::one(Problem::new(
+        format!("{file}: column{plural} {}", listed(&missing)),
+        format!("missing; the header has {}", listed(&found)),
+        "columns of these names, separated by commas",
+        remedy,
+    )))
+}
+
+/// Names with commas between them; the first few where they are many.
+fn listed(names: &[&str]) -> String {
+    let first = names[..names.len().min(MOST_NAMES)].join(", ");
+    match names.len().saturating_sub(MOST_NAMES) {
+        0 => first,
+        more => format!("{first} and {more} more"),
     }
 }
 
-/// The system's own words where the file could not be read.
-fn reason(error: &csv::Error) -> String {
+/// A file that is no CSV, or that the system could not read.
+fn fault(path: &Path, error: &csv::Error) -> Fault {
     match error.kind() {
-        csv::ErrorKind::Io(io) => io.to_string(),
-        _ => error.to_string(),
+        csv::ErrorKind::Io(io) => Fault::file(path, io),
+        _ => Fault::File {
+            path: path.display().to_string(),
+            reason: format!("{error}; save it as CSV in UTF-8"),
+        },
     }
 }

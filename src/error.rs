@@ -1,6 +1,8 @@
 //! What can go wrong, as values: each names what, its value, the allowed range and the way out.
 
 use std::fmt;
+use std::io;
+use std::path::Path;
 
 /// One thing that is wrong with an input: a parameter, a key of a file, a column, a signal.
 #[derive(Clone, Debug, PartialEq)]
@@ -81,6 +83,27 @@ impl Fault {
     /// A fault of one problem.
     pub fn one(problem: Problem) -> Self {
         Self::Invalid(vec![problem])
+    }
+
+    /// A file that could not be read or written: the system's reason, and what to do about it.
+    pub fn file(path: &Path, error: &io::Error) -> Self {
+        let remedy = match error.kind() {
+            io::ErrorKind::NotFound => "; look at its name, and at the folder that you are in",
+            io::ErrorKind::IsADirectory => "; name a file in it",
+            io::ErrorKind::PermissionDenied => "; ask for the right, or choose another place",
+            io::ErrorKind::InvalidData => "; save it as text in UTF-8",
+            _ => "",
+        };
+        Self::File { path: path.display().to_string(), reason: format!("{error}{remedy}") }
+    }
+}
+
+/// A number as short as it can be without losing a bit.
+pub fn number(x: f64) -> String {
+    if x == 0.0 || (1e-4..1e7).contains(&x.abs()) {
+        format!("{x}")
+    } else {
+        format!("{x:e}")
     }
 }
 

@@ -6,6 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import fmpy
 import numpy as np
@@ -60,10 +61,10 @@ class TreadBlock:
         The road starts linearly within `start_ramp` [s] after `dwell` [s] of rest; positive speed
         drags the block from its run-in to its run-out edge. One row every `step` [s].
         """
-        if (pressure is None) == (load is None):
-            raise TreadBlockError("pressure, load: give exactly one of them")
-        if load is None:
+        if pressure is not None and load is None:
             load = pressure * self._number("block.length") * self._number("block.width")
+        elif pressure is not None or load is None:
+            raise TreadBlockError("pressure, load: give exactly one of them")
         signals = motion.slide(speed, load, duration, step, start_ramp, dwell)
         return self._run(signals, step, {"drive.normal": "load"})
 
@@ -82,7 +83,7 @@ class TreadBlock:
         outputs = [v.name for v in self.variables.values() if v.causality == "output"]
         messages: list[str] = []
 
-        def log(_environment, _instance, _status, _category, message) -> None:
+        def log(_environment: Any, _instance: Any, _status: Any, _category: Any, message: Any) -> None:
             messages.append(message.decode() if isinstance(message, bytes) else str(message))
 
         start = {name: self._fmi(name, value) for name, value in {**self.parameters, **fixed}.items()}

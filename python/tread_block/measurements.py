@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +61,9 @@ def read_mdf(path: Path) -> Recording:
 
     signals, left_out = [], []
     with MDF(path) as mdf:
-        for number, group in enumerate(mdf.groups):
+        # Its types say less than its manual does.
+        groups: list[Any] = list(mdf.groups)
+        for number, group in enumerate(groups):
             masters = {mdf.masters_db.get(number)}
             label = str(getattr(group.channel_group, "acq_name", "") or f"group {number + 1}")
             for index, channel in enumerate(group.channels):

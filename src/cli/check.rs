@@ -35,7 +35,12 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
         Err(Fault::Invalid(problems)) => problems,
         Err(other) => return Err(other.into()),
     };
-    let text = if arguments.json { json(kind, &problems) } else { plain(file, kind, &problems) };
+    tell(file, kind, &problems, arguments.json)
+}
+
+/// Tells the problems of a file, or that there are none.
+pub fn tell(file: &Path, kind: &str, problems: &[Problem], as_json: bool) -> Result<Done, Stop> {
+    let text = if as_json { json(kind, problems) } else { plain(file, kind, problems) };
     output::to_stdout(text.as_bytes())?;
     Ok(if problems.is_empty() { Done::Fine } else { Done::Problems })
 }
@@ -52,6 +57,14 @@ fn campaign(file: &Path) -> Option<&Path> {
 
 /// What the diagnosis would tell about the data before it begins.
 fn check_campaign(place: &Path) -> Result<(), Fault> {
+    if place.is_dir() && !place.join("campaign.toml").exists() {
+        return Err(Fault::one(Problem::new(
+            place.display().to_string(),
+            "a folder without campaign.toml",
+            "a file, or the folder of a campaign",
+            "name a file in it; `tread gap import` makes a campaign",
+        )));
+    }
     let warnings = Campaign::load(place)?.warnings;
     if warnings.is_empty() {
         Ok(())

@@ -31,14 +31,20 @@ enum Command {
     /// List all variables with unit, start, range and meaning
     Describe {
         /// table, csv, xml (modelDescription.xml) or html (the FMU's documentation)
-        #[arg(long, default_value = "table")]
+        #[arg(long, default_value = "table", conflicts_with = "json")]
         format: Format,
+        /// Print JSON instead of a table
+        #[arg(long)]
+        json: bool,
     },
     /// Say what is wrong with an FMU of this model
     Check {
         /// The FMU
         #[arg(default_value = "out/TreadBlock.fmu")]
         fmu: PathBuf,
+        /// Tell the problems as JSON
+        #[arg(long)]
+        json: bool,
     },
 }
 
@@ -73,16 +79,12 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
             let path = build(options)?;
             eprintln!("packed {}", path.display());
         }
-        Command::Describe { format } => output::to_stdout(describe(*format)?.as_bytes())?,
-        Command::Check { fmu } => {
-            let problems = check(fmu)?;
-            if problems.is_empty() {
-                eprintln!("{} is fine", fmu.display());
-            } else {
-                let list: String = problems.iter().map(|p| format!("{p}\n")).collect();
-                output::to_stdout(list.as_bytes())?;
-                return Ok(Done::Problems);
-            }
+        Command::Describe { json: true, .. } => {
+            output::to_stdout(json(&variables::all()).as_bytes())?;
+        }
+        Command::Describe { format, .. } => output::to_stdout(describe(*format)?.as_bytes())?,
+        Command::Check { fmu, json } => {
+            return super::check::tell(fmu, "FMU", &package::problems(fmu)?, *json)
         }
     }
     Ok(Done::Fine)
@@ -96,10 +98,7 @@ pub fn build(options: &Build) -> Result<PathBuf, Fault> {
         options.library.iter().map(|text| library(text)).collect::<Result<_, _>>()?
     };
     let bytes = package::pack(&libraries)?;
-    let failed = |e: std::io::Error| Fault::File {
-        path: options.out.display().to_string(),
-        reason: e.to_string(),
-    };
+    let failed = |e: std::io::Error| Fault::file(&options.out, &e);
     if let Some(folder) = options.out.parent() {
         std::fs::create_dir_all(folder).map_err(failed)?;
     }
@@ -211,7 +210,23 @@ fn csv(variables: &[Variable]) -> Result<String, Fault> {
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// What is wrong with an FMU of this model.
-pub fn check(fmu: &Path) -> Result<Vec<Problem>, Fault> {
-    package::problems(fmu)
+fn json(variables: &[Variable]) -> String {
+    let list: Vec<_> = variables
+        .iter()
+        .enumerate()
+        .map(|(reference, variable)| {
+            serde_json::json!({
+                "name": variable.name,
+                "reference": reference,
+                "type": variable.kind().name(),
+                "causality": variable.causality(),
+                "variability": variable.variability(),
+                "unit": unit(variable),
+                "start": variable.start(),
+                "range": documentation::range(variable),
+                "meaning": variable.doc,
+            })
+        })
+        .collect();
+    format!("{}\n", serde_json::Value::from(list))
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use super::output::{self, Done, Stop};
 use crate::params::{load, NormalDrive, Params};
-use crate::scenario::config::{Key, KEYS, TEXT_KEYS};
+use crate::scenario::run_table::{Key, KEYS, TEXT_KEYS};
 
 /// What was typed.
 #[derive(Debug, clap::Args)]

@@ -13,11 +13,17 @@ pub struct Arguments {
     /// CSV with the FMU's outputs, as `tread simulate` or fmpy write it
     result: PathBuf,
     /// Road speed of the run [m/s]: what is slow against it counts as silence
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_negative_numbers = true, value_parser = road_speed)]
     speed: f64,
     /// Print JSON instead of a table
     #[arg(long)]
     json: bool,
+}
+
+/// A speed that something can be slow against.
+fn road_speed(text: &str) -> Result<f64, String> {
+    let speed = text.parse::<f64>().ok().filter(|v| v.is_finite() && *v != 0.0);
+    speed.ok_or_else(|| "allowed is a number in m/s that is not 0; write for example 0.3".into())
 }
 
 /// Columns that the metrics need.
@@ -32,6 +38,7 @@ const NAMES: [&str; 5] = [
 /// Prints the metrics.
 pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     let columns = columns::read(&arguments.result, &NAMES, "`tread simulate` writes such a file")?;
+    summary::enough_rows(columns[0].len())?;
     let trace = Trace {
         time: &columns[0],
         displacement: &columns[1],

@@ -40,13 +40,12 @@ pub fn exit_code(result: Result<Done, Stop>) -> ExitCode {
         Ok(Done::Problems) => ExitCode::from(1),
         Ok(Done::Code(code)) => ExitCode::from(code),
         Err(Stop::Fault(fault)) => {
-            let text = fault.to_string();
-            let count = text.lines().count();
-            if matches!(fault, Fault::Invalid(_)) && count > 1 {
-                eprintln!("tread: {count} problems:");
-                text.lines().for_each(|line| eprintln!("  {line}"));
-            } else {
-                eprintln!("tread: {text}");
+            match &fault {
+                Fault::Invalid(problems) if problems.len() > 1 => {
+                    eprintln!("tread: {} problems:", problems.len());
+                    problems.iter().for_each(|problem| eprintln!("  {problem}"));
+                }
+                other => eprintln!("tread: {other}"),
             }
             ExitCode::from(2)
         }
@@ -58,7 +57,7 @@ pub fn write_failed(path: &str, error: &io::Error) -> Stop {
     if error.kind() == io::ErrorKind::BrokenPipe {
         return Stop::PipeClosed;
     }
-    Stop::Fault(Fault::File { path: path.to_string(), reason: error.to_string() })
+    Stop::Fault(Fault::file(Path::new(path), error))
 }
 
 /// A file if one is named (its folder is made), or else the standard output.
@@ -88,13 +87,4 @@ pub fn to_stdout(bytes: &[u8]) -> Result<(), Stop> {
 pub fn to(path: Option<&Path>, bytes: &[u8]) -> Result<(), Stop> {
     let mut out = writer(path)?;
     out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| write_failed(&target(path), &e))
-}
-
-/// A number as short as it can be without losing a bit.
-pub fn number(x: f64) -> String {
-    if x == 0.0 || (1e-4..1e7).contains(&x.abs()) {
-        format!("{x}")
-    } else {
-        format!("{x:e}")
-    }
 }

@@ -8,7 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::output::{self, Done, Stop};
 use super::{field, summary};
 use crate::block::{Outputs, TreadBlock, OUTPUTS};
-use crate::error::Fault;
+use crate::error::{number, Fault};
 use crate::metrics::Recorder;
 use crate::scenario::{self, config};
 
@@ -129,9 +129,9 @@ impl Sink {
 
     fn row(&mut self, time: f64, outputs: &Outputs) -> Result<(), Stop> {
         match self {
-            Self::Csv { writer, target } => writer
-                .write_record(cells(time, outputs).map(output::number))
-                .map_err(|e| failed(target, e)),
+            Self::Csv { writer, target } => {
+                writer.write_record(cells(time, outputs).map(number)).map_err(|e| failed(target, e))
+            }
             Self::Json { columns, .. } => {
                 for (column, cell) in columns.iter_mut().zip(cells(time, outputs)) {
                     column.push(cell);

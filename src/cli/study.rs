@@ -8,6 +8,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::output::{self, Done, Stop};
 use crate::error::Fault;
 use crate::params::{load, Params};
+use crate::scenario::config;
 use crate::study;
 use crate::study::identify::objective::Fineness;
 use crate::study::measured::Measurements;
@@ -102,7 +103,5 @@ const PAPER: &str = include_str!("../../compounds/paper.toml");
 /// The compound of the file, or the one identified from the paper.
 fn compound(path: Option<&Path>) -> Result<Params, Fault> {
     let Some(path) = path else { return load::from_toml(PAPER) };
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| Fault::File { path: path.display().to_string(), reason: e.to_string() })?;
-    load::from_toml(&text)
+    load::from_toml(&config::read_text(path)?)
 }

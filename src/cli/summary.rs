@@ -3,6 +3,7 @@
 use serde_json::json;
 
 use crate::block::OUTPUTS;
+use crate::error::{Fault, Problem};
 use crate::metrics::{self, Recorder, Trace};
 use crate::params::{table, Value};
 use crate::scenario::{config::Config, Scenario};
@@ -18,6 +19,22 @@ struct Line {
     name: &'static str,
     unit: &'static str,
     value: f64,
+}
+
+/// Fewest rows that have a spectrum, or a period.
+const FEWEST_ROWS: usize = 16;
+
+/// Refuses a result that is too short for metrics and pictures.
+pub fn enough_rows(rows: usize) -> Result<(), Fault> {
+    if rows >= FEWEST_ROWS {
+        return Ok(());
+    }
+    Err(Fault::one(Problem::new(
+        "rows of the result",
+        rows.to_string(),
+        format!("{FEWEST_ROWS} or more"),
+        "make run.duration longer or run.communication_step shorter",
+    )))
 }
 
 /// Summary of a run.

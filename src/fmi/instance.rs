@@ -2,15 +2,16 @@
 
 use super::inputs::Inputs;
 use super::log::Log;
+use super::model::Model;
 use super::model_description::{guid, OUTPUT_DERIVATIVE_ORDER};
 use super::phase::Phase;
 use super::settings::Settings;
 use super::stepping::Clock;
 use super::variables::{self, Source, Type, Variable};
 use super::Refusal;
-use crate::block::{OutputSpec, Outputs, Shape, TreadBlock, OUTPUTS};
-use crate::drive::{Pose, Predictor};
-use crate::params::{Params, Value, Variability};
+use crate::block::{OutputSpec, Outputs, OUTPUTS};
+use crate::drive::Predictor;
+use crate::params::{Value, Variability};
 use std::ffi::CString;
 use std::path::PathBuf;
 
@@ -32,79 +33,6 @@ pub struct Instance {
     resources: Option<PathBuf>,
     /// Texts handed out by `fmi2GetString`, one per variable.
     texts: Vec<CString>,
-}
-
-/// The block: built when first needed, kept pristine for a reset.
-#[derive(Default)]
-pub struct Model {
-    pristine: Option<TreadBlock>,
-    block: Option<TreadBlock>,
-    /// Start time and pose with which `block` was initialized.
-    rest: Option<(f64, Pose)>,
-}
-
-impl Model {
-    /// The block at rest at `time` under `pose`; builds and initializes only what has changed.
-    fn at_rest(&mut self, params: &Params, time: f64, pose: Pose) -> Result<&Outputs, Refusal> {
-        if self.pristine.as_ref().is_none_or(|built| built.params() != params) {
-            self.forget();
-            self.pristine = Some(rebuilt(self.pristine.take(), params)?);
-        }
-        if self.rest != Some((time, pose)) {
-            self.forget();
-            let mut block = self.pristine.clone();
-            if let Some(block) = &mut block {
-                block.initialize(time, pose)?;
-            }
-            self.block = block;
-            self.rest = Some((time, pose));
-        }
-        self.outputs().ok_or_else(|| Refusal::error("the block is not initialized"))
-    }
-
-    /// The block in motion.
-    pub fn running(&mut self) -> Option<&mut TreadBlock> {
-        self.block.as_mut()
-    }
-
-    /// The block, to look at.
-    pub fn block(&self) -> Option<&TreadBlock> {
-        self.block.as_ref()
-    }
-
-    fn outputs(&self) -> Option<&Outputs> {
-        self.block.as_ref().map(TreadBlock::outputs)
-    }
-
-    /// Drops the motion, keeps the pristine block.
-    pub fn forget(&mut self) {
-        self.block = None;
-        self.rest = None;
-    }
-
-    /// A block of these parameters that holds the motion `state`.
-    pub fn resume(&mut self, params: &Params, state: &[f64]) -> Result<(), Refusal> {
-        if self.pristine.as_ref().is_none_or(|built| built.params() != params) {
-            self.pristine = Some(TreadBlock::new(params)?);
-        }
-        let mut block = self.pristine.clone();
-        let fits = block.as_mut().is_some_and(|block| block.restore(state));
-        if !fits {
-            return Err(Refusal::error("the state does not fit the block of its own parameters"));
-        }
-        self.forget();
-        self.block = block;
-        Ok(())
-    }
-}
-
-/// A block of these parameters; the reduction of the one before serves where its shape is the same.
-fn rebuilt(before: Option<TreadBlock>, params: &Params) -> Result<TreadBlock, Refusal> {
-    let kept = before.filter(|block| Shape::of(block.params()) == Shape::of(params));
-    Ok(match kept {
-        Some(block) => TreadBlock::with_reduction(params, block.reduction().clone())?,
-        None => TreadBlock::new(params)?,
-    })
 }
 
 impl Instance {

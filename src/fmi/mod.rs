@@ -11,6 +11,7 @@ pub mod exports;
 mod inputs;
 mod instance;
 mod log;
+mod model;
 pub mod model_description;
 #[cfg(feature = "cli")]
 pub mod package;

@@ -66,7 +66,7 @@ fn binary(library: &Library) -> Result<(String, Vec<u8>), Fault> {
             "write for example linux64=target/release/libtread_block.so",
         )));
     };
-    let bytes = std::fs::read(&library.file).map_err(|e| fault(&library.file, &e))?;
+    let bytes = std::fs::read(&library.file).map_err(|e| Fault::file(&library.file, &e))?;
     Ok((format!("binaries/{platform}/{MODEL_IDENTIFIER}.{ending}"), bytes))
 }
 
@@ -92,7 +92,7 @@ fn zipped(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, Fault> {
 /// # Errors
 /// [`Fault::File`] where it cannot be read as a zip file.
 pub fn problems(path: &Path) -> Result<Vec<Problem>, Fault> {
-    let bytes = std::fs::read(path).map_err(|e| fault(path, &e))?;
+    let bytes = std::fs::read(path).map_err(|e| Fault::file(path, &e))?;
     let mut archive = zip::ZipArchive::new(Cursor::new(bytes)).map_err(|e| fault(path, &e))?;
     let names: Vec<String> =
         archive.file_names().filter_map(Result::ok).map(|name| name.into_owned()).collect();
@@ -133,5 +133,6 @@ pub fn problems(path: &Path) -> Result<Vec<Problem>, Fault> {
 }
 
 fn fault(path: &Path, error: &dyn std::fmt::Display) -> Fault {
-    Fault::File { path: path.display().to_string(), reason: error.to_string() }
+    let reason = format!("{error}; name an FMU: `make fmu` builds one");
+    Fault::File { path: path.display().to_string(), reason }
 }

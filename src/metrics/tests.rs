@@ -56,18 +56,16 @@ fn alternating_cycles_are_still_one_cycle_each() {
     assert!((found / f - 1.0).abs() < 1e-3, "{found}");
 }
 
+/// A trace of one signal and a friction coefficient; what is not asked about is one of them, too.
+fn of_one<'a>(time: &'a [f64], signal: &'a [f64], friction: &'a [f64]) -> Trace<'a> {
+    Trace { time, displacement: signal, velocity: signal, friction, stick: friction }
+}
+
 #[test]
 fn a_steady_slide_is_silent_and_keeps_its_mean_friction() {
     let (time, velocity) = sampled(1200, 20e-6, |t| 0.5 * (-t / 1e-3).exp());
     let friction = vec![0.8; time.len()];
-    let trace = Trace {
-        time: &time,
-        displacement: &velocity,
-        velocity: &velocity,
-        friction: &friction,
-        stick: &friction,
-    };
-    let found = stick_slip(&trace, 0.3);
+    let found = stick_slip(&of_one(&time, &velocity, &friction), 0.3);
     assert_eq!(found.frequency, 0.0);
     assert!((found.mean_friction - 0.8).abs() < 1e-12);
 }
@@ -78,14 +76,7 @@ fn means_are_taken_over_whole_periods() {
     let f = 517.0;
     let (time, velocity) = sampled(2000, 10e-6, |t| (std::f64::consts::TAU * f * t).sin());
     let friction: Vec<f64> = velocity.iter().map(|v| 0.7 + 0.2 * v).collect();
-    let trace = Trace {
-        time: &time,
-        displacement: &velocity,
-        velocity: &velocity,
-        friction: &friction,
-        stick: &friction,
-    };
-    let found = stick_slip(&trace, 0.3);
+    let found = stick_slip(&of_one(&time, &velocity, &friction), 0.3);
     assert!((found.mean_friction - 0.7).abs() < 1e-3, "{}", found.mean_friction);
     assert!((found.displacement_amplitude - 2.0).abs() < 1e-3);
 }

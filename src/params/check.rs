@@ -2,7 +2,7 @@
 
 use super::table::{self, Kind, ParamSpec, Value};
 use super::Params;
-use crate::error::{Fault, Problem};
+use crate::error::{number, Fault, Problem};
 
 /// What is wrong with `value` for the parameter `spec`, if anything.
 pub fn value(spec: &ParamSpec, value: &Value) -> Option<Problem> {
@@ -16,7 +16,7 @@ pub fn value(spec: &ParamSpec, value: &Value) -> Option<Problem> {
             }
             let unit = if unit == "1" { "" } else { unit };
             complain(
-                format!("{min:e} to {max:e} {unit}").trim().to_string(),
+                format!("{} to {} {unit}", number(min), number(max)).trim().to_string(),
                 "give a value in SI units inside that range",
             )
         }
@@ -71,7 +71,8 @@ pub fn problems(params: &Params) -> Vec<Problem> {
         ));
     }
     let slenderness = params.block.length / params.block.height;
-    if !(0.2..=20.0).contains(&slenderness) {
+    let sized = |problem: &Problem| problem.what.starts_with("block.");
+    if !found.iter().any(sized) && !(0.2..=20.0).contains(&slenderness) {
         found.push(Problem::new(
             "block.length / block.height",
             format!("{slenderness}"),

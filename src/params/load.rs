@@ -82,20 +82,25 @@ pub fn to_toml(params: &Params) -> String {
 
 fn assign(spec: &ParamSpec, value: &toml::Value, params: &mut Params) -> Option<Problem> {
     let Some(value) = convert(spec, value) else {
-        return Some(Problem::new(
-            spec.name,
-            value.to_string(),
-            match spec.kind {
-                Kind::Enumeration { items, .. } => {
-                    items.iter().map(|item| item.name).collect::<Vec<_>>().join(", ")
-                }
-                kind => check::kind_name(kind).to_string(),
-            },
-            "give a value of that kind",
-        ));
+        let (allowed, remedy) = wanted(spec.kind);
+        return Some(Problem::new(spec.name, value.to_string(), allowed, remedy));
     };
     (spec.set)(params, &value);
     None
+}
+
+/// What a value of a kind looks like, and what to do about one that does not.
+fn wanted(kind: Kind) -> (String, &'static str) {
+    match kind {
+        Kind::Enumeration { items, .. } => {
+            let names: Vec<&str> = items.iter().map(|item| item.name).collect();
+            (names.join(", "), "choose one of these")
+        }
+        Kind::Real { unit, .. } if unit != "1" => {
+            (format!("a number in {unit}"), "write the number alone")
+        }
+        kind => (check::kind_name(kind).to_string(), "give a value of that kind"),
+    }
 }
 
 fn convert(spec: &ParamSpec, value: &toml::Value) -> Option<Value> {
@@ -127,16 +132,34 @@ fn flatten<'a>(prefix: &str, table: &'a toml::Table) -> Vec<(String, &'a toml::V
 }
 
 fn unknown(name: &str, value: &toml::Value) -> Problem {
-    let near = table::specs()
-        .map(|s| s.name)
-        .min_by_key(|known| distance(known, name))
-        .unwrap_or("block.length");
-    Problem::new(
-        name,
-        value.to_string(),
-        "a parameter of the model",
-        format!("did you mean {near}? `tread fmu describe` lists all names"),
-    )
+    let remedy = match nearest(name, table::specs().map(|s| s.name)) {
+        Some(near) => format!("did you mean {near}? `tread fmu describe` lists all names"),
+        None => format!("{}`tread fmu describe` lists all names", neighbours(name)),
+    };
+    Problem::new(name, value.to_string(), "a parameter of the model", remedy)
+}
+
+/// What else the table of this name holds, if it is a table of ours.
+fn neighbours(name: &str) -> String {
+    let table = name.rsplit_once('.').map_or(name, |(head, _)| head);
+    let keys: Vec<&str> = table::specs()
+        .filter_map(|s| s.name.strip_prefix(table)?.strip_prefix('.'))
+        .filter(|key| !key.contains('.'))
+        .collect();
+    if keys.is_empty() {
+        String::new()
+    } else {
+        format!("{table} has {}; ", keys.join(", "))
+    }
+}
+
+/// The name that was probably meant: the nearest one, if no more than a third of it is otherwise.
+pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    known
+        .map(|known| (distance(known, name), known))
+        .min_by_key(|(far, _)| *far)
+        .filter(|(far, known)| 3 * far <= known.len())
+        .map(|(_, known)| known)
 }
 
 /// Levenshtein distance of two names.
@@ -155,12 +178,23 @@ fn distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
-/// A TOML syntax error as a fault, with line and column in the parser's own words.
+/// Most of a wrong line that a message quotes [characters].
+const QUOTED: usize = 60;
+
+/// A TOML syntax error as a fault: the parser's words, its place, and the line there.
 pub fn syntax(error: &toml::de::Error) -> Fault {
+    // The parser shows "TOML parse error at line 2, column 7" first, and then "2 | the line".
+    let shown = error.to_string();
+    let place = shown.lines().next().and_then(|l| l.rsplit_once(" at ")).map_or("", |l| l.1);
+    let quoted = shown.lines().find_map(|l| {
+        l.split_once(" | ").filter(|(number, _)| number.trim().parse::<u32>().is_ok())
+    });
+    let line: String = quoted.map_or("", |l| l.1).trim().chars().take(QUOTED).collect();
+    let message = error.message().replace('\n', ", ");
     Fault::one(Problem::new(
-        "TOML",
-        error.to_string().trim().to_string(),
+        format!("TOML, {place}"),
+        format!("{line:?}: {message}"),
         "valid TOML",
-        "mend the line that the message points at",
+        "mend that line; is it the right file?",
     ))
 }

@@ -2,52 +2,10 @@
 
 use std::path::Path;
 
+use super::run_table::Reader;
 use super::{belt_csv, BeltPath, Inputs, Plan, Roll, Scenario, Slide};
 use crate::error::{Fault, Problem};
 use crate::params::{check, load, Params};
-
-/// One key of the `[run]` table.
-#[derive(Clone, Copy, Debug)]
-pub struct Key {
-    /// Dotted name below `run`, e.g. `slide.speed`.
-    pub name: &'static str,
-    /// SI unit.
-    pub unit: &'static str,
-    /// Smallest allowed value.
-    pub min: f64,
-    /// Largest allowed value.
-    pub max: f64,
-    /// Value where the key is not given; `None`: see `doc`.
-    pub default: Option<f64>,
-    /// What it is.
-    pub doc: &'static str,
-}
-
-/// Numbers of the `[run]` table.
-#[rustfmt::skip]
-pub const KEYS: &[Key] = &[
-    Key { name: "duration", unit: "s", min: 1e-6, max: 1e4, default: None, doc: "Length of the run; needed for slide, the whole path by default for roll" },
-    Key { name: "communication_step", unit: "s", min: 1e-8, max: 0.1, default: Some(10e-6), doc: "Distance of the rows, and of the inputs where they are sampled" },
-    Key { name: "slide.speed", unit: "m/s", min: -50.0, max: 50.0, default: None, doc: "Road speed; positive drags the block from run-in to run-out edge, negative reverses" },
-    Key { name: "slide.speed_end", unit: "m/s", min: -50.0, max: 50.0, default: None, doc: "Road speed at the end of the run, reached linearly; as slide.speed by default" },
-    Key { name: "slide.start_ramp", unit: "s", min: 0.0, max: 1.0, default: Some(0.5e-3), doc: "Duration of the linear start" },
-    Key { name: "slide.dwell", unit: "s", min: 0.0, max: 1e3, default: Some(0.0), doc: "Rest under load before the road starts" },
-    Key { name: "slide.mean_pressure", unit: "Pa", min: 1e3, max: 5e6, default: None, doc: "Load over length times width of the block; this or slide.load is needed" },
-    Key { name: "slide.load", unit: "N", min: 1e-2, max: 1e6, default: None, doc: "Normal load; this or slide.mean_pressure is needed" },
-    Key { name: "roll.wheel_radius", unit: "m", min: 0.05, max: 2.0, default: Some(0.3), doc: "Radius of the belt outside of the contact patch" },
-    Key { name: "roll.contact_length", unit: "m", min: 0.01, max: 0.5, default: Some(0.12), doc: "Length of the flattened belt" },
-    Key { name: "roll.belt_speed", unit: "m/s", min: 0.1, max: 150.0, default: None, doc: "Speed of the belt relative to the axle; this or roll.belt_file is needed" },
-    Key { name: "roll.slip", unit: "1", min: -1.0, max: 1.0, default: Some(0.0), doc: "Sliding of the flat belt over its speed; positive brakes, negative drives" },
-    Key { name: "roll.compression", unit: "m", min: 0.0, max: 0.05, default: Some(0.2e-3), doc: "How much lower than the undeformed block's height the flat belt runs" },
-    Key { name: "roll.blend_length", unit: "m", min: 1e-4, max: 0.5, default: Some(0.02), doc: "Length of belt over which the curvature goes from the circle's to zero" },
-    Key { name: "roll.lead", unit: "m", min: 1e-4, max: 1.0, default: Some(0.05), doc: "Length of belt before and behind the flat part" },
-];
-
-/// Texts of the `[run]` table: name, choices or kind, meaning.
-pub const TEXT_KEYS: &[(&str, &str, &str)] = &[
-    ("inputs", "exact, sampled", "exact: the motion itself; sampled: values at communication points, as an FMI master gives them"),
-    ("roll.belt_file", "a CSV file", "Belt path with the columns time_s, belt_x_m, belt_z_m, belt_angle_rad, relative to this file"),
-];
 
 /// A run: block, motion, instants.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,10 +33,7 @@ pub fn read(path: &Path, sets: &[String]) -> Result<Config, Fault> {
 /// # Errors
 /// [`Fault::File`].
 pub fn read_text(path: &Path) -> Result<String, Fault> {
-    std::fs::read_to_string(path).map_err(|error| Fault::File {
-        path: path.display().to_string(),
-        reason: error.to_string(),
-    })
+    std::fs::read_to_string(path).map_err(|error| Fault::file(path, &error))
 }
 
 /// As [`read`], of a text; a belt file is looked for in `folder`.
@@ -111,8 +66,7 @@ pub fn from_toml(text: &str, folder: &Path, sets: &[String]) -> Result<Config, F
     for set in param_sets {
         problems.extend(load::assign_text(set, &mut params));
     }
-    let mut reader = Reader { numbers: Vec::new(), texts: Vec::new(), problems };
-    reader.take("", &run);
+    let mut reader = Reader::of(&run, problems);
     if run.is_empty() {
         reader.problems.extend(check::problems(&params));
         if reader.problems.is_empty() {
@@ -172,75 +126,7 @@ fn set_in(document: &mut toml::Table, assignment: &str) -> Option<Problem> {
     None
 }
 
-/// What a `[run]` table holds, and what is wrong with it.
-struct Reader {
-    numbers: Vec<(&'static str, f64)>,
-    texts: Vec<(&'static str, String)>,
-    problems: Vec<Problem>,
-}
-
 impl Reader {
-    fn take(&mut self, prefix: &str, table: &toml::Table) {
-        for (key, value) in table {
-            let name = format!("{prefix}{key}");
-            if let toml::Value::Table(inner) = value {
-                self.take(&format!("{name}."), inner);
-            } else if let Some(key) = KEYS.iter().find(|k| k.name == name) {
-                self.number(key, value);
-            } else if let Some((known, allowed, _)) = TEXT_KEYS.iter().find(|k| k.0 == name) {
-                match value {
-                    toml::Value::String(text) => self.texts.push((known, text.clone())),
-                    _ => self.complain(&name, &value.to_string(), allowed, "put it in quotes"),
-                }
-            } else {
-                let keys: Vec<&str> = KEYS.iter().map(|k| k.name).collect();
-                let allowed = format!("one of {}, inputs, roll.belt_file", keys.join(", "));
-                self.complain(&name, &value.to_string(), &allowed, "mend the key or drop it");
-            }
-        }
-    }
-
-    fn number(&mut self, key: &Key, value: &toml::Value) {
-        let number = match value {
-            toml::Value::Float(x) => *x,
-            toml::Value::Integer(i) => *i as f64,
-            _ => f64::NAN,
-        };
-        if number >= key.min && number <= key.max {
-            self.numbers.push((key.name, number));
-        } else {
-            let allowed = format!("a number from {} to {} {}", key.min, key.max, key.unit);
-            self.complain(key.name, &value.to_string(), &allowed, "give it in SI units");
-        }
-    }
-
-    fn complain(&mut self, name: &str, value: &str, allowed: &str, remedy: &str) {
-        self.problems.push(Problem::new(format!("run.{name}"), value, allowed, remedy));
-    }
-
-    fn given(&self, name: &str) -> Option<f64> {
-        self.numbers.iter().find(|(known, _)| *known == name).map(|(_, value)| *value)
-    }
-
-    fn or_default(&self, name: &str) -> f64 {
-        let default = KEYS.iter().find(|k| k.name == name).and_then(|k| k.default);
-        self.given(name).or(default).unwrap_or(0.0)
-    }
-
-    fn needed(&mut self, name: &str, remedy: &str) -> Option<f64> {
-        let value = self.given(name);
-        let unreadable = self.problems.iter().any(|p| p.what == format!("run.{name}"));
-        if value.is_none() && !unreadable {
-            let unit = KEYS.iter().find(|k| k.name == name).map_or("", |k| k.unit);
-            self.complain(name, "missing", &format!("a number [{unit}]"), remedy);
-        }
-        value
-    }
-
-    fn text(&self, name: &str) -> Option<&str> {
-        self.texts.iter().find(|(known, _)| *known == name).map(|(_, text)| text.as_str())
-    }
-
     /// Scenario and plan, if nothing that they need is wrong.
     fn build(
         &mut self,

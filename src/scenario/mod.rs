@@ -10,6 +10,8 @@ mod belt_path;
 #[cfg(feature = "cli")]
 pub mod config;
 mod roll;
+#[cfg(feature = "cli")]
+pub mod run_table;
 mod slide;
 mod spline;
 

@@ -4,7 +4,7 @@ use toml::Value;
 
 use crate::error::Problem;
 use crate::params::{check, table, Kind};
-use crate::scenario::config::{KEYS, TEXT_KEYS};
+use crate::scenario::run_table::{KEYS, TEXT_KEYS};
 
 /// A varied parameter or key of the `[run]` table.
 #[derive(Clone, Debug, PartialEq)]

@@ -72,7 +72,7 @@ impl Journal {
     /// # Errors
     /// [`Fault::File`]; a journal that is there without `resume`, or of another plan or version.
     pub fn open(path: &Path, plan: &Plan, resume: bool) -> Result<(Self, Vec<Record>), Fault> {
-        let failed = |e: std::io::Error| file_fault(path, &e);
+        let failed = |e: std::io::Error| Fault::file(path, &e);
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(failed)?;
         }
@@ -107,12 +107,8 @@ impl Journal {
     /// # Errors
     /// [`Fault::File`].
     pub fn append(&mut self, line: &str) -> Result<(), Fault> {
-        self.file.write_all(line.as_bytes()).map_err(|e| file_fault(&self.path, &e))
+        self.file.write_all(line.as_bytes()).map_err(|e| Fault::file(&self.path, &e))
     }
-}
-
-fn file_fault(path: &Path, error: &std::io::Error) -> Fault {
-    Fault::File { path: path.display().to_string(), reason: error.to_string() }
 }
 
 /// Length of the whole lines and the records in them; of a point that is there twice the first.

@@ -8,7 +8,8 @@ use super::axis::{fitting, Axis, Column};
 use super::design::{self, Method, SOBOL_LIMITS};
 use crate::error::{Fault, Problem};
 use crate::params::{load, table, Params};
-use crate::scenario::config::{self, Config, KEYS};
+use crate::scenario::config::{self, Config};
+use crate::scenario::run_table::KEYS;
 
 /// Most points of a plan: the journal of one is then about a gigabyte.
 const MOST_POINTS: usize = 5_000_000;

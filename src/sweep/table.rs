@@ -201,14 +201,11 @@ fn write_parquet(plan: &Plan, columns: &[Column], path: &Path) -> Result<(), Par
 pub fn write(plan: &Plan, records: &[Record], folder: &Path) -> Result<[PathBuf; 2], Fault> {
     let [csv_path, parquet_path] = ["sweep.csv", "sweep.parquet"].map(|name| folder.join(name));
     let part = |path: &Path| path.with_extension("part");
-    let failed = |path: &Path, e: std::io::Error| Fault::File {
-        path: path.display().to_string(),
-        reason: e.to_string(),
-    };
     let text = csv(plan, records)?;
-    std::fs::write(part(&csv_path), text).map_err(|e| failed(&csv_path, e))?;
-    std::fs::rename(part(&csv_path), &csv_path).map_err(|e| failed(&csv_path, e))?;
+    std::fs::write(part(&csv_path), text).map_err(|e| Fault::file(&csv_path, &e))?;
+    std::fs::rename(part(&csv_path), &csv_path).map_err(|e| Fault::file(&csv_path, &e))?;
     parquet(plan, records, &part(&parquet_path))?;
-    std::fs::rename(part(&parquet_path), &parquet_path).map_err(|e| failed(&parquet_path, e))?;
+    std::fs::rename(part(&parquet_path), &parquet_path)
+        .map_err(|e| Fault::file(&parquet_path, &e))?;
     Ok([csv_path, parquet_path])
 }

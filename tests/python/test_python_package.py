@@ -1,5 +1,6 @@
 """The Python package against the FMU; skipped where the FMU is not built."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -57,6 +58,13 @@ def test_wrong_names_and_values_are_told_at_once():
         TreadBlock({"rubber.poisson_ratio": 0.6}, fmu=FMU).slide(speed=0.1, load=10.0)
     with pytest.raises(TreadBlockError, match="exactly one"):
         TreadBlock(fmu=FMU).slide(speed=0.1)
+
+
+def test_the_types_are_strict():
+    # As in the folder python/, whose pyproject.toml says which libraries have no types of their own.
+    run = subprocess.run([sys.executable, "-m", "mypy", "tread_block", "--cache-dir", os.devnull],
+                         cwd=ROOT / "python", capture_output=True, text=True)
+    assert run.returncode == 0, run.stdout + run.stderr
 
 
 def test_pip_installs_the_package_with_its_types(tmp_path):

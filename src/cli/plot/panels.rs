@@ -69,7 +69,7 @@ fn panels(root: &Area, run: &Run) -> Drawn {
         ["frequency [kHz]", "velocity [mm/s]"],
         &[
             Curve { name: "amplitude", color: BLUE_LINE, points: spectrum },
-            Curve { name: "third octaves, effective", color: RED_LINE, points: thirds },
+            Curve { name: "third octaves, rms", color: RED_LINE, points: thirds },
         ],
     )?;
     pressure_map(&areas[4], run)?;
@@ -100,6 +100,15 @@ fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     low - margin..high + margin
 }
 
+/// A number at an axis: no more digits than it needs.
+pub(super) fn tick(value: &f64) -> String {
+    let digits = format!("{value:.4}");
+    match digits.trim_end_matches('0').trim_end_matches('.') {
+        "-0" => "0".to_string(),
+        short => short.to_string(),
+    }
+}
+
 fn lines(area: &Area, title: &str, [x_axis, y_axis]: [&str; 2], curves: &[Curve]) -> Drawn {
     let points = || curves.iter().flat_map(|c| c.points.iter());
     let (xs, mut ys) = (range(points().map(|p| p.0)), range(points().map(|p| p.1)));
@@ -121,6 +130,8 @@ fn lines(area: &Area, title: &str, [x_axis, y_axis]: [&str; 2], curves: &[Curve]
         .axis_desc_style(("sans-serif", 15))
         .label_style(("sans-serif", 13))
         .light_line_style(WHITE)
+        .x_label_formatter(&tick)
+        .y_label_formatter(&tick)
         .x_labels(7)
         .y_labels(7)
         .draw()
@@ -173,6 +184,8 @@ fn pressure_map(area: &Area, run: &Run) -> Drawn {
         .y_desc("station, 1 = run-in edge")
         .axis_desc_style(("sans-serif", 15))
         .label_style(("sans-serif", 13))
+        .x_label_formatter(&tick)
+        .y_label_formatter(&tick)
         .x_labels(7)
         .draw()
         .map_err(|e| e.to_string())?;

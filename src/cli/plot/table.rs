@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use crate::block::STATIONS;
+use crate::cli::summary;
 use crate::columns;
-use crate::error::{Fault, Problem};
+use crate::error::Fault;
 
 /// What the panels need of a result.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,14 +40,7 @@ pub fn read(path: &Path) -> Result<Run, Fault> {
     let mut names = NAMES.to_vec();
     names.extend(stations.iter().map(String::as_str));
     let mut columns = columns::read(path, &names, "`tread simulate` writes such a file")?;
-    if columns[0].len() < 16 {
-        return Err(Fault::one(Problem::new(
-            "rows of the result",
-            columns[0].len().to_string(),
-            "16 or more",
-            "make run.duration longer or run.communication_step shorter",
-        )));
-    }
+    summary::enough_rows(columns[0].len())?;
     let pressure = columns.split_off(NAMES.len());
     let mut columns = columns.into_iter();
     let mut next = || columns.next().unwrap_or_default();

@@ -50,7 +50,9 @@ fn chart(root: &panels::Area, runs: &[(String, Run)], speeds: &[f64]) -> Result<
         .x_desc("frequency [kHz]")
         .axis_desc_style(("sans-serif", 15))
         .label_style(("sans-serif", 13))
-        .light_line_style(WHITE);
+        .light_line_style(WHITE)
+        .x_label_formatter(&panels::tick)
+        .y_label_formatter(&panels::tick);
     if over_speed {
         mesh.y_desc("road speed [m/s]");
     } else {

@@ -1,12 +1,15 @@
 //! `tread reference`: pages of the book that are made from the code and so cannot drift from it.
 
+mod formats;
+
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use super::output::{self, Done, Stop};
 use crate::block::{INPUTS, OUTPUTS};
-use crate::params::{table, Kind, ParamSpec, Params, Variability};
-use crate::scenario::config::{KEYS, TEXT_KEYS};
+use crate::error::number;
+use crate::params::{table, Kind, ParamSpec, Params, Value, Variability};
+use crate::scenario::run_table::{KEYS, TEXT_KEYS};
 
 /// What was typed.
 #[derive(Debug, clap::Args)]
@@ -23,6 +26,8 @@ pub fn run(arguments: &Arguments, command: clap::Command) -> Result<Done, Stop> 
         ("parameters.md", parameters()),
         ("run-files.md", run_files()),
         ("signals.md", signals()),
+        ("campaigns.md", formats::campaigns()),
+        ("diagnosis.md", formats::diagnosis()),
     ];
     for (name, text) in pages {
         let file = arguments.folder.join(name);
@@ -76,23 +81,27 @@ fn parameters() -> String {
 
 fn parameter_row(spec: &ParamSpec, defaults: &Params) -> String {
     let (unit, allowed) = match spec.kind {
-        Kind::Real { unit, min, max, .. } => (unit, format!("{min:e} to {max:e}")),
+        Kind::Real { unit, min, max, .. } => (unit, format!("{} to {}", number(min), number(max))),
         Kind::Integer { min, max } => ("1", format!("{min} to {max}")),
-        Kind::Enumeration { items, .. } => {
-            let items: Vec<String> =
-                items.iter().map(|i| format!("`{}` ({})", i.name, i.doc)).collect();
-            ("", items.join(", "))
-        }
+        Kind::Enumeration { .. } => ("", "one of these".to_string()),
         Kind::Boolean => ("", "true, false".to_string()),
         Kind::Text => ("", "text".to_string()),
     };
-    let default = match table::show(spec, &(spec.get)(defaults)) {
-        text if text.is_empty() => "none".to_string(),
-        text => format!("`{text}`"),
+    let default = match (spec.get)(defaults) {
+        Value::Real(x) => number(x),
+        other => table::show(spec, &other),
     };
+    let default = if default.is_empty() { "none".to_string() } else { format!("`{default}`") };
     let tunable = if spec.variability == Variability::Tunable { "tunable" } else { "" };
-    let doc = escape(spec.doc);
-    format!("| `{}` | {unit} | {default} | {} | {tunable} | {doc} |", spec.name, escape(&allowed))
+    let doc = escape(&meaning(spec));
+    format!("| `{}` | {unit} | {default} | {allowed} | {tunable} | {doc} |", spec.name)
+}
+
+/// What a parameter is, and what each of its choices is.
+fn meaning(spec: &ParamSpec) -> String {
+    let Kind::Enumeration { items, .. } = spec.kind else { return spec.doc.to_string() };
+    let items: Vec<String> = items.iter().map(|i| format!("`{}`: {}", i.name, i.doc)).collect();
+    format!("{}. {}", spec.doc, items.join("; "))
 }
 
 fn run_files() -> String {
@@ -103,14 +112,14 @@ fn run_files() -> String {
          | key | unit | default | allowed | meaning |\n|---|---|---|---|---|\n",
     );
     for key in KEYS {
-        let default = key.default.map_or(String::new(), |d| format!("`{}`", output::number(d)));
+        let default = key.default.map_or(String::new(), |d| format!("`{}`", number(d)));
         let _ = writeln!(
             page,
             "| `run.{}` | {} | {default} | {} to {} | {} |",
             key.name,
             key.unit,
-            output::number(key.min),
-            output::number(key.max),
+            number(key.min),
+            number(key.max),
             escape(key.doc)
         );
     }

@@ -1,6 +1,8 @@
 //! The book is true: links lead somewhere, tutorials run, equations cited by the code exist.
 #![cfg(feature = "cli")]
 
+mod drift;
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

@@ -1,57 +1,13 @@
 //! The command line from outside: the real binary, in a folder of its own per test.
 #![cfg(feature = "cli")]
 
+mod folder;
+mod problems;
+
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 
-/// A folder that goes away with the test.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(test: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("tread-{test}-{}", std::process::id()));
-        std::fs::create_dir_all(&path).unwrap();
-        Self(path)
-    }
-
-    fn write(&self, name: &str, text: &str) -> PathBuf {
-        let path = self.0.join(name);
-        std::fs::write(&path, text).unwrap();
-        path
-    }
-
-    fn tread(&self, arguments: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_tread"))
-            .args(arguments)
-            .current_dir(&self.0)
-            .output()
-            .unwrap()
-    }
-
-    /// Standard output of a command that has to do its work.
-    fn fine(&self, arguments: &[&str]) -> String {
-        let output = self.tread(arguments);
-        assert_eq!(output.status.code(), Some(0), "{arguments:?}\n{}", stderr(&output));
-        String::from_utf8(output.stdout).unwrap()
-    }
-
-    /// Standard error of a command that has to refuse.
-    fn refused(&self, arguments: &[&str]) -> String {
-        let output = self.tread(arguments);
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}\n{}", stderr(&output));
-        stderr(&output)
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
-}
-
-fn stderr(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stderr).into_owned()
-}
+use folder::{stderr, Folder};
 
 fn project(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
@@ -84,27 +40,15 @@ fn what_init_writes_is_checked_simulated_and_plotted() {
 }
 
 #[test]
-fn a_sweep_is_checked_with_the_run_of_each_point() {
-    let folder = Folder::new("check-sweep");
-    let plan = format!("{SLIDE}[sweep]\nmethod = \"grid\"\n[sweep.vary]\n");
-    let vary = "\"rubber.poisson_ratio\" = [0.45, 0.49]\n";
-    folder.write("good.toml", &format!("{plan}{vary}"));
-    assert!(folder.fine(&["check", "good.toml"]).contains("a good sweep"));
-    folder.write("bad.toml", &format!("{plan}{}", vary.replace("0.49", "0.6")));
-    let checked = folder.tread(&["check", "bad.toml"]);
-    assert_eq!(checked.status.code(), Some(1), "{}", stderr(&checked));
-    tells(&String::from_utf8_lossy(&checked.stdout), &["rubber.poisson_ratio", "0.6"]);
-}
-
-#[test]
 fn the_csv_has_the_outputs_of_the_fmu_and_a_row_per_communication_step() {
     let folder = Folder::new("columns");
     folder.write("run.toml", SLIDE);
     let csv = folder.fine(&["simulate", "run.toml", "--set", "run.communication_step=1e-4"]);
     let mut lines = csv.lines();
     let header: Vec<&str> = lines.next().unwrap().split(',').collect();
-    // 20 scalars of the issue on the model, 2 of a compliant rig, 2 × 21 stations and the time.
-    assert_eq!(header.len(), 20 + 2 + 2 * 21 + 1, "{header:?}");
+    // The FMU has a variable for each output, an array's elements counted one by one.
+    let outputs: usize = tread_block::block::OUTPUTS.iter().map(|spec| spec.size).sum();
+    assert_eq!(header.len(), outputs + 1, "{header:?}");
     assert_eq!(header[0], "time");
     for name in ["force.x", "contact.pressure[1]", "contact.sliding_speed[21]", "carriage.z"] {
         assert!(header.contains(&name), "{name}");
@@ -150,64 +94,15 @@ fn json_names_units_and_parameters() {
 }
 
 #[test]
-fn all_problems_of_a_file_are_told_at_once() {
-    let folder = Folder::new("problems");
-    folder.write(
-        "bad.toml",
-        "[run]\nduration = -1.0\ncolour = \"red\"\n[run.slide]\nspeed = \"fast\"\n\
-         [rubber]\npoisson_ratio = 0.5\nyoung_moduls = 5e7\n[friction]\nform = \"linear\"\n",
-    );
-    let text = folder.refused(&["simulate", "bad.toml", "--set", "block.length=0"]);
-    tells(&text, &["run.duration", "-1", "0.000001 to 10000 s"]);
-    tells(&text, &["run.colour", "red", "one of", "drop"]);
-    tells(&text, &["run.slide.speed", "fast", "-50 to 50 m/s", "SI units"]);
-    tells(&text, &["run.slide.mean_pressure", "missing", "a number [Pa]", "mean_pressure = 250e3"]);
-    tells(&text, &["rubber.poisson_ratio", "0.5", "4.999e-1"]);
-    tells(&text, &["rubber.young_moduls", "did you mean rubber.young_modulus?"]);
-    tells(&text, &["friction.form", "linear", "rational, log_bell, table", "give"]);
-    tells(&text, &["block.length = 0", "1e-3 to 2e-1 m"]);
-    let output = folder.tread(&["check", "bad.toml", "--json"]);
-    assert_eq!(output.status.code(), Some(1));
-    let json: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
-    assert!(json["problems"].as_array().unwrap().len() >= 7);
-}
-
-#[test]
-fn a_run_that_says_nothing_or_too_much_is_refused() {
-    let folder = Folder::new("nothing");
-    folder.write("empty.toml", "[block]\nlength = 0.02\n");
-    tells(&folder.refused(&["simulate", "empty.toml"]), &["run = missing", "[run.slide]", "init"]);
-    folder.write("both.toml", &format!("{SLIDE}[run.roll]\nbelt_speed = 10\n"));
-    tells(&folder.refused(&["simulate", "both.toml"]), &["run.slide or roll", "exactly one"]);
-    folder.write("drive.toml", &format!("{SLIDE}[drive]\nnormal = \"trajectory\"\n"));
-    let text = folder.refused(&["simulate", "drive.toml"]);
-    tells(&text, &["drive.normal", "trajectory", "load", "leave it out"]);
-    folder.write("broken.toml", "[run\n");
-    tells(&folder.refused(&["simulate", "broken.toml"]), &["TOML"]);
-    tells(&folder.refused(&["simulate", "absent.toml"]), &["absent.toml", "No such file"]);
-    tells(&folder.refused(&["simulate", "both.toml", "--set", "nonsense"]), &["nonsense"]);
-}
-
-#[test]
-fn a_malformed_belt_path_is_told_by_column_and_line() {
-    let folder = Folder::new("belt");
-    folder.write("run.toml", "[run.roll]\nbelt_file = \"belt.csv\"\n");
-    tells(&folder.refused(&["simulate", "run.toml"]), &["run.roll.belt_file", "belt.csv"]);
-    folder.write("belt.csv", "time,belt_x_m,belt_z_m\n0,0,0\n");
-    let text = folder.refused(&["simulate", "run.toml"]);
-    tells(&text, &["column time_s", "missing", "tread belt"]);
-    tells(&text, &["column belt_angle_rad", "missing"]);
-    let header = "time_s,belt_x_m,belt_z_m,belt_angle_rad\n";
-    folder.write("belt.csv", &format!("{header}0,0,0.01,0\n1e-5,x,0.01,0\n2e-5,0,nan\n"));
-    let text = folder.refused(&["simulate", "run.toml"]);
-    tells(&text, &["column belt_x_m, line 3", "x", "a finite number"]);
-    tells(&text, &["column belt_z_m, line 4", "nan"]);
-    tells(&text, &["column belt_angle_rad, line 4", "missing"]);
-    let still = "1e-5,0,0.01,0\n2e-5,0,0.01,0\n3e-5,0,0.01,0\n3e-5,9,0.01,0\n";
-    folder.write("belt.csv", &format!("{header}0,0,0.01,0\n{still}"));
-    let output = folder.tread(&["check", "belt.csv"]);
-    assert_eq!(output.status.code(), Some(1));
-    tells(&String::from_utf8_lossy(&output.stdout), &["time_s, sample 5", "more than 0.00003"]);
+fn what_is_printed_for_people_comes_as_json_too() {
+    let folder = Folder::new("for-programs");
+    let text = folder.fine(&["fmu", "describe", "--json"]);
+    let variables: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let load = variables.as_array().unwrap().iter().find(|v| v["name"] == "normal_load").unwrap();
+    assert_eq!(load["unit"], "N");
+    assert_eq!(load["causality"], "input");
+    folder.write("no.fmu", "no zip");
+    tells(&folder.refused(&["fmu", "check", "no.fmu", "--json"]), &["no.fmu", "make fmu"]);
 }
 
 #[test]
