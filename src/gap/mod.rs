@@ -4,6 +4,7 @@
 //! Campaign → features of every run → base model recalibrated to the datasheet's spread → every effect
 //! added and fitted with equal effort → probabilities → hold-out runs. See the book, `gap.md`.
 
+pub mod balance;
 pub mod calibration;
 pub mod campaign;
 pub mod decide;
@@ -27,6 +28,7 @@ pub mod predict;
 pub mod problem;
 pub mod quality;
 pub mod report;
+pub mod road;
 pub mod score;
 pub mod simulate;
 pub mod spectrum;
