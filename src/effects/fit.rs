@@ -62,17 +62,6 @@ pub struct FitForm {
     pub params: &'static [FitParam],
 }
 
-impl FitForm {
-    /// More parameters than a cause may have: it follows what it is asked to, is no evidence for an effect, and is
-    /// fitted only once the effect is known to be there.
-    pub const fn is_profile(&self) -> bool {
-        self.params.len() > FEW
-    }
-}
-
-/// Most parameters of a form that can be evidence for its effect.
-const FEW: usize = 5;
-
 /// What a fit needs to know of an effect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitSpec {
@@ -88,11 +77,6 @@ pub struct FitSpec {
 pub const OFF: f64 = 0.0;
 
 impl FitSpec {
-    /// Number of forms that can be evidence for the effect; they come before its profile.
-    pub fn telling(&self) -> usize {
-        self.forms.iter().take_while(|form| !form.is_profile()).count()
-    }
-
     /// Enables the effect in `params` with its form number `form` and `values` of that form's
     /// parameters; `false` if there is no such form or a value is missing.
     pub fn apply(&self, form: usize, values: &[f64], params: &mut Params) -> bool {

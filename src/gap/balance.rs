@@ -11,7 +11,7 @@ use super::symmetry::{Finding, Rule};
 /// Missing force over the load, median of the runs, from which the balance is broken. In the labelled campaigns it
 /// stays within 0.0002, single runs within 0.001.
 const MISSING: f64 = 0.0015;
-/// Remainder of z over what is expected, median of the runs. Labelled campaigns: 0.9 to 1.05, 1.7 with a slow clock.
+/// Remainder of z over what is expected, median of the runs: 0.9 to 1.05 in the labelled campaigns.
 const ASTRAY: f64 = 1.4;
 /// What sampling without an anti-aliasing filter adds to the remainder of z \[m\].
 const ALIASED: f64 = 0.15e-6;

@@ -150,7 +150,7 @@ pub fn diagnose(
     whole.measure_floor(&bench.params(&[], &fits.base.fit.x), &all)?;
     if settings.method.recalibrate {
         let seen = held_out::to_fit(&bench.runs, &held, Look::Whole);
-        polish::polish(&campaign, &mut whole, &mut fits, &weighed, &seen, progress)?;
+        polish::polish(&whole, &mut fits, &weighed, &seen, progress);
     }
     progress(0.99, "judging the held-out runs");
     let (gap, closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);

@@ -63,7 +63,7 @@ pub fn first_guess(
     let possible = symmetry::possible(&findings);
     for (effect, spec) in bench.specs.iter().enumerate() {
         progress(0.05 + 0.01 * effect as f64, &format!("first guess of {}", spec.effect));
-        let forms = if method.families { spec.telling() } else { 1 };
+        let forms = if method.families { spec.forms.len() } else { 1 };
         let guess = possible[effect].then(|| guess_effect(bench, effect, forms, &free, of));
         effects.push(guess.flatten());
     }

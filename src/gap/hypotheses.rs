@@ -155,7 +155,7 @@ pub fn fit_all(
         let order = ranked(&singles).into_iter().filter(|at| possible[*at]);
         for at in order.take(FAMILIES).collect::<Vec<_>>() {
             let effect = singles[at].added[0].effect;
-            for form in 1..bench.specs[effect].telling() {
+            for form in 1..bench.specs[effect].forms.len() {
                 let (found, _) = start_effect(bench, &base, Choice { effect, form }, of, method);
                 singles[at].take_better(bench, found, of);
             }

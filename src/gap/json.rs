@@ -2,8 +2,8 @@
 
 use super::decide::{self, Cause};
 use super::diagnose::{self, Diagnosis};
-use super::hypotheses::{self, Hypothesis};
-use super::problem::{Bench, Look};
+use super::hypotheses;
+use super::problem::Look;
 use super::simulate::nominal;
 use crate::error::{Fault, Problem};
 use crate::params::{table, Kind, Params, Value};
@@ -62,7 +62,7 @@ pub fn document(d: &Diagnosis) -> Json {
         })).collect::<Vec<_>>(),
         "models": {
             "nominal": from_defaults(&nominal(&bench.plan)),
-            "recalibrated": from_defaults(&params_of(d, &Cause::None)),
+            "recalibrated": from_defaults(&bench.params(&[], &d.fits.base.fit.x)),
             "with-effect": from_defaults(&params_of(d, &best)),
             "with-effect_effects": decide::names(bench, &d.fits, &best),
         },
@@ -88,7 +88,7 @@ pub fn document(d: &Diagnosis) -> Json {
 /// Parameters of the model of a cause.
 pub fn params_of(d: &Diagnosis, cause: &Cause) -> Params {
     let hypothesis = decide::fit_of(&d.fits, cause);
-    bench_of(d, hypothesis).params(&hypothesis.added, &hypothesis.fit.x)
+    d.bench.params(&hypothesis.added, &hypothesis.fit.x)
 }
 
 fn hypotheses_json(d: &Diagnosis) -> Vec<Json> {
@@ -113,19 +113,10 @@ fn hypotheses_json(d: &Diagnosis) -> Vec<Json> {
         .collect()
 }
 
-/// The bench that a hypothesis was fitted on last.
-fn bench_of<'a>(d: &'a Diagnosis, hypothesis: &Hypothesis) -> &'a Bench {
-    if hypothesis.look == Look::Whole {
-        &d.whole
-    } else {
-        &d.bench
-    }
-}
-
 /// Fitted parameters of a cause with standard deviations and priors.
 pub fn parameters(d: &Diagnosis, cause: &Cause) -> Vec<Json> {
     let hypothesis = decide::fit_of(&d.fits, cause);
-    let bench = bench_of(d, hypothesis);
+    let bench = if hypothesis.look == Look::Whole { &d.whole } else { &d.bench };
     let deviations = hypotheses::deviations(bench, hypothesis);
     d.bench
         .coordinates(&hypothesis.added)

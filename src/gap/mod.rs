@@ -28,7 +28,6 @@ pub mod predict;
 pub mod problem;
 pub mod quality;
 pub mod report;
-pub mod road;
 pub mod score;
 pub mod simulate;
 pub mod spectrum;

@@ -2,7 +2,7 @@
 
 use super::campaign::{self, Plan, Record, RunSpec, CHANNELS};
 use super::json;
-use super::simulate::{road_speed, Fineness, Simulator};
+use super::simulate::{road_speed, Simulator};
 use crate::error::Fault;
 use std::io::Write;
 use std::path::Path;
@@ -19,7 +19,7 @@ pub fn predict(diagnosis: &Path, plan: &Path, model: &str, out: &Path) -> Result
     params.block.width = plan.block.width_m;
     params.carriage.mass = plan.rig.load_carriage_mass_kg;
     params.carriage.damping = plan.rig.load_carriage_damping_n_s_m;
-    let simulator = Simulator::cut(&plan, Fineness::of(&params))?;
+    let simulator = Simulator::new(&plan)?;
     for spec in &plan.runs {
         let record = simulator.run(&params, spec, spec.duration_s)?;
         let target = out.join(&spec.file);

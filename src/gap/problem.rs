@@ -3,7 +3,7 @@
 use super::campaign::{Campaign, Plan, RunKind, RunSpec};
 use super::features::{self, Aspect, Feature, Key};
 use super::floor;
-use super::simulate::{self, nominal, set, Fineness, Simulator, DATASHEET, FIT};
+use super::simulate::{nominal, set, Simulator, DATASHEET, FINE};
 use crate::effects::fit::{FitSpec, Spread};
 use crate::error::Fault;
 use crate::params::Params;
@@ -63,14 +63,6 @@ impl Coordinate {
         }
     }
 
-    /// The x at which the parameter has this value.
-    pub fn whitened(&self, value: f64) -> f64 {
-        match self.spread {
-            Spread::Log(s) => (value / self.centre).ln() / s,
-            Spread::Absolute(s) => (value - self.centre) / s,
-        }
-    }
-
     /// Standard deviation of the value where x has the standard deviation `sd`.
     pub fn deviation(&self, x: f64, sd: f64) -> f64 {
         match self.spread {
@@ -124,8 +116,6 @@ pub struct Bench {
     /// Runs in the order of the data vector.
     pub runs: Vec<RunSpec>,
     simulator: Simulator,
-    /// How finely the block is cut.
-    pub fineness: Fineness,
     /// How much of the runs is compared.
     look: Look,
     /// Measured features, run after run.
@@ -149,19 +139,6 @@ impl Bench {
     /// # Errors
     /// What stops the reduction of the block.
     pub fn new(campaign: &Campaign, specs: &'static [FitSpec], look: Look) -> Result<Self, Fault> {
-        Self::cut(campaign, specs, look, FIT)
-    }
-
-    /// The same on a mesh as fine as `fineness` says.
-    ///
-    /// # Errors
-    /// What stops the reduction of the block.
-    pub fn cut(
-        campaign: &Campaign,
-        specs: &'static [FitSpec],
-        look: Look,
-        fineness: Fineness,
-    ) -> Result<Self, Fault> {
         let plan = campaign.plan.clone();
         let runs: Vec<RunSpec> = campaign.runs.iter().map(|r| r.spec.clone()).collect();
         let measured: Vec<Vec<Feature>> = campaign
@@ -185,13 +162,12 @@ impl Bench {
                 Some(Coordinate { name, centre: datum.value, spread })
             })
             .collect();
-        let simulator = Simulator::cut(&plan, fineness)?;
+        let simulator = Simulator::new(&plan)?;
         let simulations = AtomicUsize::new(0);
         Ok(Self {
             plan,
             runs,
             simulator,
-            fineness,
             look,
             measured,
             inverse,
@@ -229,7 +205,6 @@ impl Bench {
     /// Parameters of the model at `x`.
     pub fn params(&self, added: &[Choice], x: &[f64]) -> Params {
         let mut params = nominal(&self.plan);
-        simulate::cut(&mut params, self.fineness);
         let values: Vec<f64> =
             self.coordinates(added).iter().zip(x).map(|(c, x)| c.value(*x)).collect();
         for (coordinate, value) in self.base.iter().zip(&values) {
@@ -284,7 +259,7 @@ impl Bench {
     /// # Errors
     /// What stops the reduction.
     pub fn measure_floor(&mut self, params: &Params, of: &[usize]) -> Result<(), Fault> {
-        let fine = Simulator::cut(&self.plan, self.fineness.finer())?;
+        let fine = Simulator::cut(&self.plan, FINE)?;
         let found: Vec<Option<Vec<f64>>> = of
             .par_iter()
             .map(|r| {

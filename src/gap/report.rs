@@ -171,7 +171,7 @@ fn overlays(d: &Diagnosis, out: &mut String) {
         .campaign
         .runs
         .par_iter()
-        .map(|run| models.iter().map(|m| d.whole.simulate(m, &run.spec).ok()).collect())
+        .map(|run| models.iter().map(|m| d.bench.simulate(m, &run.spec).ok()).collect())
         .collect();
     // Over their whole length: the eye sees drifts of phase that the fit does not look at.
     for (run, records) in d.campaign.runs.iter().zip(&simulated) {

@@ -33,37 +33,6 @@ pub struct Fineness {
     tolerance: f64,
 }
 
-impl Fineness {
-    /// As fine as these parameters say.
-    pub fn of(params: &Params) -> Self {
-        let solver = &params.solver;
-        Self {
-            elements: (solver.elements_along, solver.elements_up),
-            bound: solver.frequency_bound,
-            tolerance: solver.tolerance,
-        }
-    }
-
-    /// What its error is measured against.
-    pub fn finer(self) -> Self {
-        Self { elements: (FINE.elements.0.max(self.elements.0 + 4), FINE.elements.1), ..FINE }
-    }
-
-    /// Cut finer along the face, so that it follows a wave of length `wavelength` \[m\] on a face of length
-    /// `length` \[m\].
-    pub fn for_wave(self, wavelength: f64, length: f64) -> Self {
-        let needed = (WAVE_ELEMENTS * length / wavelength).ceil() as usize;
-        let along = needed.clamp(self.elements.0, MOST_ALONG);
-        Self { elements: (along, self.elements.1), ..self }
-    }
-}
-
-/// Elements per wave of the road: with fewer the sum over the nodes says nothing of the load that a wave puts on the
-/// face (0.53 instead of 0.03 of its amplitude for 1.7 mm on the fits' 3 mm).
-const WAVE_ELEMENTS: f64 = 1.6;
-/// No mesh of a fit has more elements along the face.
-const MOST_ALONG: usize = 18;
-
 /// For the fits: several times faster than the default.
 pub const FIT: Fineness = Fineness { elements: (6, 4), bound: 14e3, tolerance: 3e-3 };
 /// What the fits' error is measured against.
@@ -97,7 +66,7 @@ pub fn nominal(plan: &Plan) -> Params {
 }
 
 /// Sets how finely the block is cut.
-pub(super) fn cut(params: &mut Params, fineness: Fineness) {
+fn cut(params: &mut Params, fineness: Fineness) {
     params.solver.elements_along = fineness.elements.0;
     params.solver.elements_up = fineness.elements.1;
     params.solver.frequency_bound = fineness.bound;

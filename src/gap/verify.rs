@@ -5,7 +5,6 @@ use super::campaign::Campaign;
 use super::held_out;
 use super::json;
 use super::problem::{Bench, Look};
-use super::simulate::Fineness;
 use crate::error::Fault;
 use serde_json::Value as Json;
 use std::path::Path;
@@ -34,8 +33,7 @@ pub fn closed(id: &str, answer: &Path, campaign: &Path) -> Result<Closed, Fault>
         .map_err(|e| Fault::File { path: answer.display().to_string(), reason: e.to_string() })?;
     let document: Json = serde_json::from_str(&text).unwrap_or_default();
     let campaign = Campaign::load(campaign)?;
-    let fineness = Fineness::of(&json::read_model(answer, "with-effect")?);
-    let mut bench = Bench::cut(&campaign, crate::effects::fit_specs(), Look::Whole, fineness)?;
+    let mut bench = Bench::new(&campaign, crate::effects::fit_specs(), Look::Whole)?;
     let all: Vec<usize> = (0..bench.runs.len()).collect();
     bench.measure_floor(&json::read_model(answer, "recalibrated")?, &all)?;
     let squares = |model: &str| -> Result<Vec<f64>, Fault> {
