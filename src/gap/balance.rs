@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_constant_force_moves_a_damped_body_as_newton_says() {
-        // Closed form: z = F/c (t − (M/c)(1 − exp(−ct/M))), 2 kg, 240 N s/m, 1 N after 24 ms: 54.0 um to the
+        // Closed form: z = F/c (t − (M/c)(1 − exp(−ct/M))), 2 kg, 240 N s/m, 1 N after 24 ms: 67.2 um to the
         // trapezoid's (ct/M)²/12 per step, 2e-6.
         let way = moved(&[1.0; 601], 2.0, 240.0, 40e-6);
         let t: f64 = 24e-3;
