@@ -4,6 +4,7 @@
 //! Campaign → features of every run → base model recalibrated to the datasheet's spread → every effect
 //! added and fitted with equal effort → probabilities → hold-out runs. See the book, `gap.md`.
 
+pub mod balance;
 pub mod calibration;
 pub mod campaign;
 pub mod decide;

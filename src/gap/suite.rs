@@ -35,14 +35,25 @@ enum Truth {
     Gain,
     /// The clock of the measurement runs at another rate; no effect of the list.
     Clock,
+    /// The normal force channel sees some of friction; no effect of the list.
+    CrossTalk,
+    /// The zero of the friction channel drifts in every run; no effect of the list.
+    Drift,
 }
+
+/// Sensors that are wrong, in turn.
+const OUTSIDE: [(Truth, &str); 4] = [
+    (Truth::Gain, "x_gain"),
+    (Truth::Clock, "x_clock"),
+    (Truth::CrossTalk, "x_cross_talk"),
+    (Truth::Drift, "x_drift"),
+];
 
 /// Every fourth campaign has no effect, every eighth one that is not in the list.
 fn truth(number: usize) -> Truth {
     match number % 8 {
         0 | 4 => Truth::None,
-        7 if number % 16 == 7 => Truth::Gain,
-        7 => Truth::Clock,
+        7 => OUTSIDE[number / 8 % OUTSIDE.len()].0,
         k => {
             let before = number / 8 * 5 + [0, 0, 1, 2, 2, 3, 4][k];
             Truth::Effect(before % fit_specs().len())
@@ -132,11 +143,7 @@ fn drawn(plan: &Plan, noise: &mut Noise) -> Params {
 /// Adds what causes the gap; returns its label.
 fn add(truth: Truth, severity: f64, params: &mut Params, noise: &mut Noise) -> Json {
     let Truth::Effect(effect) = truth else {
-        let effects: &[&str] = match truth {
-            Truth::Gain => &["x_gain"],
-            Truth::Clock => &["x_clock"],
-            _ => &[],
-        };
+        let effects: Vec<&str> = OUTSIDE.iter().filter(|o| o.0 == truth).map(|o| o.1).collect();
         return json!({"effects": effects, "severity": 1.0 + severity});
     };
     let spec = &fit_specs()[effect];
@@ -169,9 +176,24 @@ fn distort(truth: Truth, severity: f64, record: &mut Record) {
                 *column = slowed(column, share);
             }
         }
+        Truth::CrossTalk => {
+            let [friction, normal, ..] = &mut record.channel;
+            let pairs = friction.iter().flatten().zip(normal.iter_mut().flatten());
+            pairs.for_each(|(f, n)| *n += (share - 1.0) * f);
+        }
+        Truth::Drift => {
+            let count = record.time.len() as f64;
+            let full = DRIFT * (1.0 + severity);
+            for column in record.channel[campaign::FRICTION].iter_mut() {
+                column.iter_mut().enumerate().for_each(|(i, f)| *f += full * i as f64 / count);
+            }
+        }
         Truth::None | Truth::Effect(_) => {}
     }
 }
+
+/// Drift of the zero of the friction channel over a run at severity 1 \[N\].
+const DRIFT: f64 = 3.0;
 
 /// The column as a clock sees it that is slow by the factor `share`; the end stands still.
 fn slowed(column: &[f64], share: f64) -> Vec<f64> {
