@@ -51,8 +51,9 @@ fn reference(case: &Case) -> (StickSlip, f64) {
     (metrics::stick_slip(&trace, case.speed), *columns["t"].last().unwrap())
 }
 
-fn model(case: &Case, duration: f64, step: f64) -> StickSlip {
+fn model(case: &Case, duration: f64, step: f64, points: usize) -> StickSlip {
     let mut params = Params::default();
+    params.solver.contact_points = points;
     params.block.height = case.height;
     params.block.length = case.length;
     // The reference is without wear.
@@ -72,7 +73,7 @@ fn sliding_is_the_independent_solution_within_the_tolerances_of_the_project() {
     let mut wrong = Vec::new();
     for case in &CASES {
         let (expected, end) = reference(case);
-        let found = model(case, end, 20e-6);
+        let found = model(case, end, 20e-6, 0);
         for (name, found, expected, tolerance) in [
             ("frequency", found.frequency, expected.frequency, 0.01),
             ("displacement", found.displacement_amplitude, expected.displacement_amplitude, 0.03),
@@ -86,4 +87,15 @@ fn sliding_is_the_independent_solution_within_the_tolerances_of_the_project() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn eight_contact_points_keep_the_frequency_and_friction_of_the_reference_case() {
+    // Both within 1 % of the independent solution.
+    let (expected, end) = reference(&CASES[0]);
+    let found = model(&CASES[0], end, 20e-6, 8);
+    let errors =
+        [found.frequency / expected.frequency, found.mean_friction / expected.mean_friction]
+            .map(|ratio| ratio - 1.0);
+    assert!(errors.iter().all(|error| error.abs() < 0.01), "{errors:?}");
 }

@@ -70,7 +70,7 @@ impl Interface {
     }
 
     /// `reduced`, whose contact nodes are those of `mesh`, with the face held to the polynomials through these
-    /// points: C ← TᵀCT, M ← TᵀMT, T the interpolation for both directions.
+    /// points (theory eq. 1.4a): C ← TᵀCT, M ← TᵀMT, T the interpolation for both directions.
     pub fn restrict(&self, reduced: &CraigBampton, mesh: &Mesh) -> CraigBampton {
         let shape = self.interpolation(&mesh.x);
         let (nodes, points) = shape.shape();
