@@ -96,12 +96,9 @@ fn write(study: &Study, out: &Path) -> Result<(), Stop> {
     Ok(())
 }
 
-/// The compound identified from the paper: the default of the studies.
-const PAPER: &str = include_str!("../../compounds/paper.toml");
-
 /// The compound of the file, or the one identified from the paper.
 fn compound(path: Option<&Path>) -> Result<Params, Fault> {
-    let Some(path) = path else { return load::from_toml(PAPER) };
+    let Some(path) = path else { return study::identified::paper() };
     let text = std::fs::read_to_string(path)
         .map_err(|e| Fault::File { path: path.display().to_string(), reason: e.to_string() })?;
     load::from_toml(&text)

@@ -4,7 +4,9 @@ pub mod cycle_jump;
 pub mod fig_2;
 pub mod fig_3;
 pub mod fig_4;
+pub mod identified;
 pub mod identify;
+pub mod margin;
 pub mod measured;
 pub mod paper;
 pub mod plot;
@@ -15,6 +17,7 @@ pub mod start;
 pub mod table_one;
 pub mod variation;
 pub mod vibration;
+pub mod watch;
 pub mod wear_laws;
 
 use crate::error::{Fault, Problem};

@@ -5,6 +5,7 @@ use super::gauss_newton::{improve, Local};
 use super::hops::Hops;
 use super::objective::{modulus_over_density, Fineness, Problem};
 use super::space::{places, Unknown};
+use super::walk::Walk;
 use crate::error::Fault;
 use crate::params::Params;
 use crate::study::paper::{Column, TABLE_1};
@@ -27,6 +28,8 @@ pub struct Task {
     pub population: usize,
     /// Hops of the global search, each followed by a local one.
     pub hops: usize,
+    /// Steps of a walk downhill; 0: none.
+    pub walk: usize,
     /// Rounds of a local search.
     pub rounds: usize,
     /// Solve the local search coarsely, too.
@@ -40,11 +43,11 @@ pub struct Task {
 /// A step of the identification as it is told.
 #[derive(Clone, Debug)]
 pub struct Progress<'a> {
-    /// `global`, `hop` or `local`.
+    /// `global`, `hop`, `walk` or `local`.
     pub stage: &'static str,
-    /// Tables simulated so far in the global search, or hops made.
+    /// Tables simulated so far in the global search, or hops or steps of the walk made.
     pub evaluations: usize,
-    /// Best cost so far.
+    /// Best cost so far; of a walk its toll.
     pub cost: f64,
     /// Parameters of the best.
     pub best: &'a Params,
@@ -90,10 +93,20 @@ pub fn identify(
         x = hop(task, &searched, x, &mut told);
     }
     let fine = problem(Fineness::choose(task.coarse));
-    let local = improve(&fine, x, task.rounds, |x, cost| {
-        let best = &fine.params(x);
-        told(&Progress { stage: "local", evaluations: task.evaluations, cost, best });
-    });
+    let mut walked = None;
+    if task.walk > 0 {
+        let end = walk(task, &fine, x, &mut told);
+        x = end.x.clone();
+        walked = Some(end);
+    }
+    let local = match walked {
+        // Nothing is left to do, and the walk's own model is good enough a Jacobian.
+        Some(end) if task.rounds == 0 => end,
+        _ => improve(&fine, x, task.rounds, |x, cost| {
+            let best = &fine.params(x);
+            told(&Progress { stage: "local", evaluations: task.evaluations, cost, best });
+        }),
+    };
     let mut params = fine.params(&local.x);
     params.wear = task.start.wear.clone();
     let cost = Problem::cost(&local.residuals, &local.x);
@@ -115,6 +128,22 @@ fn hop(
         told(&Progress { stage: "hop", evaluations, cost, best });
     }
     hops.best().0.x.clone()
+}
+
+/// Walks downhill from `start`.
+fn walk(
+    task: &Task,
+    problem: &Problem<'_>,
+    start: Vec<f64>,
+    told: &mut impl FnMut(&Progress<'_>),
+) -> Local {
+    let mut walk = Walk::new(problem, start, task.seed);
+    for evaluations in 1..=task.walk {
+        walk.step();
+        let (x, cost) = walk.place();
+        told(&Progress { stage: "walk", evaluations, cost, best: &problem.params(x) });
+    }
+    walk.end()
 }
 
 /// Covariance matrix adaptation from `start`; returns the best place seen.
