@@ -72,7 +72,7 @@ fn two_columns_predict_the_other_two() {
 
 /// Statements of the paper about a figure that do not hold on the paper's compound.
 fn refuted(figure: &str) -> Vec<String> {
-    let measured = Measurements::new(None, None).unwrap();
+    let measured = Measurements::new(None, None, None).unwrap();
     let studies =
         study::run(figure, &compound("paper"), &Fineness::FINE, &measured, |_, _, _| {}).unwrap();
     let verdicts = studies.iter().flat_map(|s| &s.verdicts);

@@ -37,6 +37,9 @@ pub struct Arguments {
     /// Measured wear beside fig-3: CSV with the columns pressure_pa, speed_m_s, rate_kg_m3
     #[arg(long, value_name = "CSV")]
     wear: Option<PathBuf>,
+    /// Measured contact stiffness beside fig-2: CSV with the columns approach_m, force_n
+    #[arg(long, value_name = "CSV")]
+    stiffness: Option<PathBuf>,
     /// Solve coarsely: faster, frequencies within about 2 %
     #[arg(long)]
     coarse: bool,
@@ -49,7 +52,11 @@ pub struct Arguments {
 pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
     let params = compound(arguments.compound.as_deref())?;
     let fineness = Fineness::choose(arguments.coarse);
-    let measured = Measurements::new(arguments.friction.as_deref(), arguments.wear.as_deref())?;
+    let measured = Measurements::new(
+        arguments.friction.as_deref(),
+        arguments.wear.as_deref(),
+        arguments.stiffness.as_deref(),
+    )?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.unwrap_or(0))
         .build()

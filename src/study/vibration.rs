@@ -66,10 +66,14 @@ const FREE: f64 = 2876.0;
 /// Damping over the critical one at [`FREE`], pi f0 beta, up to which a free block swings rather than creeps.
 const SWINGS: f64 = 0.75;
 
+/// Damping over the critical one of the base case's first mode: pi f0 beta.
+fn critical(beta: f64) -> f64 {
+    std::f64::consts::PI * FREE * beta
+}
+
 /// How many of the runs, in the order of rising damping, are of blocks that swing.
 fn swinging(damping: &Variation) -> usize {
-    let ratio = |beta: f64| std::f64::consts::PI * FREE * beta;
-    damping.runs.iter().take_while(|r| ratio(r.0.value) <= SWINGS).count()
+    damping.runs.iter().take_while(|r| critical(r.0.value) <= SWINGS).count()
 }
 
 /// What to know of the damping's range.
@@ -135,6 +139,7 @@ pub fn fig_6(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     };
     let hz = speeds.frequencies();
     let stick: Vec<f64> = speeds.runs.iter().map(|r| most_stuck(&r.1, &r.2)).collect();
+    let time: Vec<f64> = speeds.runs.iter().map(|r| 1e2 * time_stuck(&r.1, &r.2)).collect();
     let told = |i: usize| match hz[i] {
         hz if hz > 0.0 => format!("{hz:.0} Hz"),
         _ => "silent".to_string(),
@@ -160,15 +165,23 @@ pub fn fig_6(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         Verdict::new(
             "no prominent sticking phase at 400 mm/s",
             stick[4] < 0.5,
-            format!("up to {:.0} % stuck", 1e2 * stick[4]),
+            format!("up to {:.0} % stuck, {:.0} % of the time", 1e2 * stick[4], time[4]),
         ),
     ];
     Ok(Study {
         name: "fig-6",
         title: "Sliding speed",
-        notes: "A sticking phase: more than half of the contact slides slower than 15 % of the road speed \
-                at some time of the settled part."
-            .to_string(),
+        notes: format!(
+            "A sticking phase: more than half of the contact slides slower than 15 % of the road speed at some time \
+             of the settled part. It does so for {:.0}, {:.0}, {:.0} and {:.0} % of the time at 100, 200, 300 and \
+             400 mm/s. The identified damping is {:.2} of the critical one of the free block's first mode: such a \
+             block does not swing through, it is let go and caught again, also near its critical speed.",
+            time[1],
+            time[2],
+            time[3],
+            time[4],
+            critical(compound.rubber.stiffness_damping)
+        ),
         tables: vec![speeds.summary(), speeds.traces()],
         pictures: vec![(
             "fig-6.svg".to_string(),
@@ -187,6 +200,18 @@ fn most_stuck(traces: &Traces, metrics: &StickSlip) -> f64 {
         .filter(|(t, _)| **t >= metrics.settled_from)
         .map(|(_, s)| *s)
         .fold(0.0, f64::max)
+}
+
+/// Share of the time of the settled part in which more than half of the contact sticks.
+fn time_stuck(traces: &Traces, metrics: &StickSlip) -> f64 {
+    let settled =
+        traces.time.iter().zip(&traces.stick).filter(|(t, _)| **t >= metrics.settled_from);
+    let (mut stuck, mut all) = (0.0, 0.0_f64);
+    for (_, share) in settled {
+        stuck += f64::from(u8::from(*share > 0.5));
+        all += 1.0;
+    }
+    stuck / all.max(1.0)
 }
 
 /// Figure 7: pressure and geometry.
