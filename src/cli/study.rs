@@ -96,7 +96,11 @@ fn write(study: &Study, out: &Path) -> Result<(), Stop> {
     for (name, text) in study.tables.iter().chain(&study.pictures) {
         output::to(Some(&out.join(name)), text.as_bytes())?;
     }
-    eprintln!("{}: {}\n{}", study.name, study.title, study.notes);
+    eprintln!("{}: {}", study.name, study.title);
+    for (_, text) in study.tables.iter().filter(|(name, _)| name.ends_with(".txt")) {
+        eprint!("{text}");
+    }
+    eprintln!("{}", study.notes);
     for verdict in &study.verdicts {
         eprintln!("  {}", verdict.line());
     }

@@ -152,13 +152,13 @@ pub fn table_1(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         name: "table-1",
         title: "Stick-slip frequencies over geometry and speed",
         notes: format!(
-            "{}{}{}{}",
-            table.text(),
+            "{}{}{}",
             from_rest.changes(&table),
             margin::text(&changed),
             identification.as_ref().map_or("", |i| &i.notes)
         ),
         tables: [
+            ("table-1.txt".to_string(), table.text()),
             ("table-1.csv".to_string(), table.csv()),
             ("table-1-from-rest.csv".to_string(), from_rest.csv()),
             ("table-1-margin.csv".to_string(), margin::csv(&changed)),

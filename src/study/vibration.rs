@@ -39,7 +39,9 @@ pub fn fig_5(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     };
     let notes = format!("{}{}", modulus.beyond_small_strain(), of_damping(&damping));
     let mut verdicts = trend(&modulus.runs, "E", [false, true]);
-    verdicts.extend(trend(&damping.runs[..swinging(&damping)], "beta", [false, true]));
+    let light = &damping.runs[..swinging(&damping)];
+    let to = light.last().map_or(0.0, |r| 1e6 * r.0.value);
+    verdicts.extend(trend(light, &format!("beta up to {to:.0} us"), [false, true]));
     let first = damping.runs.iter().find(|r| r.2.frequency == 0.0).map(|r| r.0.value);
     verdicts.push(Verdict::new(
         "for large damping the oscillation vanishes",
