@@ -6,7 +6,7 @@ use std::fmt::Write;
 use nalgebra::{Matrix2, Vector2};
 
 use super::objective::{Fineness, Problem};
-use super::run::{identify, Identified, Task};
+use super::run::{self, Identified, Task};
 use super::space::{set, unknowns, Unknown};
 use crate::contact::friction::{FrictionLaw, Law};
 use crate::error::Fault;
@@ -69,27 +69,36 @@ pub fn compare(
     mut told: impl FnMut(&str),
 ) -> Result<Vec<Tried>, Fault> {
     let fineness = Fineness::choose(task.coarse);
-    let table = |params: &Params| {
+    let simulate = |params: &Params| {
         TableOne::simulate(params, &task.columns, &fineness, Start::Braking, reductions)
     };
     let mut out = Vec::new();
     for form in LAWS {
         told(name(form));
         let (start, rms) = fit(&task.start, form);
+        let first = simulate(&start);
         let own = form == task.start.friction.form;
         let task = Task { start, unknowns: unknowns(form), ..task.clone() };
-        let found = if own { found.clone() } else { identify(&task, reductions, |_| {})? };
+        let params = if own { found.params.clone() } else { run::fit(&task, reductions)? };
+        let table = simulate(&params);
         out.push(Tried {
             law: name(form),
             unknowns: task.unknowns.len(),
             rms,
-            first: table(&task.start),
-            table: table(&found.params),
-            cost: Problem::cost(&found.local.residuals, &found.local.x),
+            first,
+            cost: cost(&params, &task, &fineness, reductions),
+            table,
         });
     }
     out.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     Ok(out)
+}
+
+/// Cost of the searches.
+fn cost(params: &Params, task: &Task, fineness: &Fineness, reductions: &Reductions) -> f64 {
+    let (unknowns, columns, fineness) = (&task.unknowns, &task.columns, *fineness);
+    let problem = Problem { base: params, unknowns, columns, fineness, reductions };
+    Problem::cost(&problem.residuals_of(params), &[])
 }
 
 /// The parameters of `base` with the law `form` that is nearest to its curve by least squares, and the root mean square

@@ -73,44 +73,69 @@ pub fn identify(
     reductions: &Reductions,
     mut told: impl FnMut(&Progress<'_>),
 ) -> Result<Identified, Fault> {
-    let mut base = task.start.clone();
-    base.wear.coefficient = 0.0;
-    base.rubber.young_modulus =
-        base.rubber.density * modulus_over_density(&base, &TABLE_1, reductions)?;
-    let problem = |fineness| Problem {
-        base: &base,
-        unknowns: &task.unknowns,
-        columns: &task.columns,
-        fineness,
-        reductions,
-    };
-    let mut x = places(&task.unknowns, &base);
-    let searched = problem(Fineness::choose(!task.fine));
-    if task.evaluations > 0 {
-        x = global(task, &searched, x, &mut told);
-    }
-    if task.hops > 0 {
-        x = hop(task, &searched, x, &mut told);
-    }
-    let fine = problem(Fineness::choose(task.coarse));
-    let mut walked = None;
-    if task.walk > 0 {
-        let end = walk(task, &fine, x, &mut told);
-        x = end.x.clone();
-        walked = Some(end);
-    }
-    let local = match walked {
-        // Nothing is left to do, and the walk's own model is good enough a Jacobian.
-        Some(end) if task.rounds == 0 => end,
-        _ => improve(&fine, x, task.rounds, |x, cost| {
-            let best = &fine.params(x);
-            told(&Progress { stage: "local", evaluations: task.evaluations, cost, best });
-        }),
-    };
+    let base = base(task, reductions)?;
+    let x = search(task, &base, reductions, &mut told);
+    let fine = problem(task, &base, Fineness::choose(task.coarse), reductions);
+    let local = improve(&fine, x, task.rounds, |x, cost| {
+        let best = &fine.params(x);
+        told(&Progress { stage: "local", evaluations: task.evaluations, cost, best });
+    });
     let mut params = fine.params(&local.x);
     params.wear = task.start.wear.clone();
     let cost = Problem::cost(&local.residuals, &local.x);
     Ok(Identified { params, local, cost })
+}
+
+/// Identifies without saying how well the data pin the parameters down; returns them.
+///
+/// # Errors
+/// What stops the reduction of a geometry.
+pub fn fit(task: &Task, reductions: &Reductions) -> Result<Params, Fault> {
+    if task.rounds > 0 {
+        return identify(task, reductions, |_| {}).map(|found| found.params);
+    }
+    let base = base(task, reductions)?;
+    let x = search(task, &base, reductions, &mut |_| {});
+    Ok(problem(task, &base, Fineness::FINE, reductions).params(&x))
+}
+
+/// The start without wear and with the modulus that Table 1's eigenfrequencies ask for.
+fn base(task: &Task, reductions: &Reductions) -> Result<Params, Fault> {
+    let mut base = task.start.clone();
+    base.wear.coefficient = 0.0;
+    base.rubber.young_modulus =
+        base.rubber.density * modulus_over_density(&base, &TABLE_1, reductions)?;
+    Ok(base)
+}
+
+fn problem<'a>(
+    task: &'a Task,
+    base: &'a Params,
+    fineness: Fineness,
+    reductions: &'a Reductions,
+) -> Problem<'a> {
+    Problem { base, unknowns: &task.unknowns, columns: &task.columns, fineness, reductions }
+}
+
+/// All that comes before the local search; returns where it ends.
+fn search(
+    task: &Task,
+    base: &Params,
+    reductions: &Reductions,
+    told: &mut impl FnMut(&Progress<'_>),
+) -> Vec<f64> {
+    let mut x = places(&task.unknowns, base);
+    let searched = problem(task, base, Fineness::choose(!task.fine), reductions);
+    if task.evaluations > 0 {
+        x = global(task, &searched, x, told);
+    }
+    if task.hops > 0 {
+        x = hop(task, &searched, x, told);
+    }
+    if task.walk > 0 {
+        x = walk(task, &problem(task, base, Fineness::choose(task.coarse), reductions), x, told);
+    }
+    x
 }
 
 /// Hops from `start`; returns the best place seen.
@@ -130,20 +155,20 @@ fn hop(
     hops.best().0.x.clone()
 }
 
-/// Walks downhill from `start`.
+/// Walks downhill from `start`; returns where it ends.
 fn walk(
     task: &Task,
     problem: &Problem<'_>,
     start: Vec<f64>,
     told: &mut impl FnMut(&Progress<'_>),
-) -> Local {
+) -> Vec<f64> {
     let mut walk = Walk::new(problem, start, task.seed);
     for evaluations in 1..=task.walk {
         walk.step();
         let (x, cost) = walk.place();
         told(&Progress { stage: "walk", evaluations, cost, best: &problem.params(x) });
     }
-    walk.end()
+    walk.place().0.to_vec()
 }
 
 /// Covariance matrix adaptation from `start`; returns the best place seen.
