@@ -38,7 +38,10 @@ pub fn of(compound: &Params) -> Option<Identification> {
             ("table-1-parameters.csv".to_string(), PARAMETERS.to_string()),
             ("table-1-directions.csv".to_string(), DIRECTIONS.to_string()),
             ("table-1-laws.csv".to_string(), LAWS.to_string()),
-        ],
+        ]
+        .into_iter()
+        .filter(|(_, csv)| csv.lines().count() > 1)
+        .collect(),
     })
 }
 
