@@ -250,8 +250,8 @@ mod tests {
             rational_exponent: 1.3,
             ..Friction::default()
         };
-        let mut there = Params::default();
-        there.friction = Friction { mu_inf: 0.1, mu_drop: 0.2, ..truth.clone() };
+        let friction = Friction { mu_inf: 0.1, mu_drop: 0.2, ..truth.clone() };
+        let mut there = Params { friction, ..Params::default() };
         let unknowns = unknowns(FrictionForm::Rational);
         assert!(levels(&mut there, &unknowns, &curve(&truth)) < 1e-12);
         let told = ["friction.mu_inf", "friction.mu_drop"].map(|name| get(&there, name));
@@ -261,14 +261,14 @@ mod tests {
     #[test]
     fn an_exponential_is_found_beside_two() {
         // Two exponentials of which the slow one has no share are one: the distance must vanish but for the grid.
-        let mut base = Params::default();
-        base.friction = Friction {
+        let friction = Friction {
             form: FrictionForm::TwoExponentials,
             decay_speed: 0.6,
             decay_exponent: 0.8,
             slow_share: 0.0,
             ..Friction::default()
         };
+        let base = Params { friction, ..Params::default() };
         let (found, rms) = fit(&base, FrictionForm::Exponential);
         assert!(rms < 1e-4, "{rms}");
         assert!((found.friction.decay_speed / 0.6 - 1.0).abs() < 1e-2);
