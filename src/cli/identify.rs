@@ -9,7 +9,7 @@ use crate::params::{load, Params};
 use crate::study::identify::objective::Fineness;
 use crate::study::identify::residual::{self, Explained, Question};
 use crate::study::identify::run::{identify, Progress, Task};
-use crate::study::identify::{report, space};
+use crate::study::identify::{laws, report, space};
 use crate::study::paper::{Column, TABLE_1};
 use crate::study::slides::Reductions;
 
@@ -19,7 +19,9 @@ Examples:
   tread identify --columns h10l15,h6l45 --out out/cross
   tread identify --law rational --evaluations 4000 --out out/rational
   tread identify --start compounds/paper.toml --evaluations 0 --hops 40 --rounds 14 --out out/hops
-  tread identify --start compounds/paper.toml --evaluations 0 --out out/polish";
+  tread identify --start compounds/paper.toml --evaluations 0 --out out/polish
+  tread identify --start compounds/paper.toml --evaluations 0 --walk 200 --rounds 0 --out out/walk
+  tread identify --start compounds/paper.toml --evaluations 0 --walk 80 --rounds 0 --laws --out out/laws";
 
 /// What was typed.
 #[derive(Debug, clap::Args)]
@@ -55,6 +57,9 @@ pub struct Arguments {
     /// Hops along what the table hardly pins down, each followed by a local search
     #[arg(long, default_value_t = 0)]
     hops: usize,
+    /// Steps of a walk downhill that looks at the worst cells, the median and what one per cent of friction changes
+    #[arg(long, default_value_t = 0, value_name = "STEPS")]
+    walk: usize,
     /// Rounds of a local search
     #[arg(long, default_value_t = 8)]
     rounds: usize,
@@ -71,6 +76,9 @@ pub struct Arguments {
     /// Fit every effect to what is left, with the same effort each, and say what it explains
     #[arg(long)]
     effects: bool,
+    /// Try every friction law: each begins at its least-squares fit to the curve of the start and gets the same search
+    #[arg(long)]
+    laws: bool,
     /// Threads; all cores if not given
     #[arg(long)]
     threads: Option<usize>,
@@ -91,7 +99,20 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
         })
     })?;
     write(&best, &found.params)?;
-    let report = report::markdown(&task, &found);
+    let mut report = report::markdown(&task, &found);
+    for (name, text) in [
+        ("parameters.csv", report::parameters_csv(&task, &found)),
+        ("directions.csv", report::directions_csv(&task, &found)),
+    ] {
+        output::to(Some(&arguments.out.join(name)), text.as_bytes())?;
+    }
+    if arguments.laws {
+        let tried = pool.install(|| {
+            laws::compare(&task, &found, &Reductions::default(), |law| eprintln!("law {law}"))
+        })?;
+        output::to(Some(&arguments.out.join("laws.csv")), laws::csv(&tried).as_bytes())?;
+        report.push_str(&laws::markdown(&tried));
+    }
     output::to(Some(&arguments.out.join("report.md")), report.as_bytes())?;
     eprint!("{report}");
     if arguments.effects {
@@ -167,6 +188,7 @@ fn task(arguments: &Arguments) -> Result<Task, Fault> {
         spread: arguments.spread,
         population: arguments.population,
         hops: arguments.hops,
+        walk: arguments.walk,
         rounds: arguments.rounds,
         coarse: arguments.coarse,
         fine: arguments.fine,

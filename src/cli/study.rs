@@ -38,6 +38,9 @@ pub struct Arguments {
     /// Measured wear beside fig-3: CSV with the columns pressure_pa, speed_m_s, rate_kg_m3
     #[arg(long, value_name = "CSV")]
     wear: Option<PathBuf>,
+    /// Measured contact stiffness beside fig-2: CSV with the columns approach_m, force_n
+    #[arg(long, value_name = "CSV")]
+    stiffness: Option<PathBuf>,
     /// Solve coarsely: faster, frequencies within about 2 %
     #[arg(long)]
     coarse: bool,
@@ -50,7 +53,11 @@ pub struct Arguments {
 pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
     let params = compound(arguments.compound.as_deref())?;
     let fineness = Fineness::choose(arguments.coarse);
-    let measured = Measurements::new(arguments.friction.as_deref(), arguments.wear.as_deref())?;
+    let measured = Measurements::new(
+        arguments.friction.as_deref(),
+        arguments.wear.as_deref(),
+        arguments.stiffness.as_deref(),
+    )?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.unwrap_or(0))
         .build()
@@ -90,18 +97,19 @@ fn write(study: &Study, out: &Path) -> Result<(), Stop> {
     for (name, text) in study.tables.iter().chain(&study.pictures) {
         output::to(Some(&out.join(name)), text.as_bytes())?;
     }
-    eprintln!("{}: {}\n{}", study.name, study.title, study.notes);
+    eprintln!("{}: {}", study.name, study.title);
+    for (_, text) in study.tables.iter().filter(|(name, _)| name.ends_with(".txt")) {
+        eprint!("{text}");
+    }
+    eprintln!("{}", study.notes);
     for verdict in &study.verdicts {
         eprintln!("  {}", verdict.line());
     }
     Ok(())
 }
 
-/// The compound identified from the paper: the default of the studies.
-const PAPER: &str = include_str!("../../compounds/paper.toml");
-
 /// The compound of the file, or the one identified from the paper.
 fn compound(path: Option<&Path>) -> Result<Params, Fault> {
-    let Some(path) = path else { return load::from_toml(PAPER) };
+    let Some(path) = path else { return study::identified::paper() };
     load::from_toml(&config::read_text(path)?)
 }

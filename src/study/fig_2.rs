@@ -1,7 +1,7 @@
 //! Figure 2: friction characteristic, and contact stiffness as force over approach.
 
 use super::identify::objective::Fineness;
-use super::measured::Grid;
+use super::measured::{Curve, Measurements};
 use super::plot::{svg, Panel, Series};
 use super::report::{csv, Study, Verdict};
 use super::slides::Reductions;
@@ -11,6 +11,8 @@ use crate::drive::Pose;
 use crate::error::Fault;
 use crate::params::{NormalDrive, Params};
 
+/// Length of the block whose contact stiffness is shown \[m\].
+const LENGTH: f64 = 0.015;
 /// Pressures of the paper's studies \[Pa\].
 const PRESSURES: [f64; 4] = [100e3, 250e3, 400e3, 600e3];
 
@@ -18,7 +20,11 @@ const PRESSURES: [f64; 4] = [100e3, 250e3, 400e3, 600e3];
 ///
 /// # Errors
 /// What stops the block.
-pub fn fig_2(compound: &Params, fineness: &Fineness, measured: &Grid) -> Result<Study, Fault> {
+pub fn fig_2(
+    compound: &Params,
+    fineness: &Fineness,
+    measured: &Measurements,
+) -> Result<Study, Fault> {
     let law = Law::new(&compound.friction, None);
     let speeds: Vec<f64> = (0..80).map(|i| 1e-3 * 3000.0_f64.powf(f64::from(i) / 79.0)).collect();
     let mu = |p: f64, v: f64| law.at(p, v)[0];
@@ -26,7 +32,8 @@ pub fn fig_2(compound: &Params, fineness: &Fineness, measured: &Grid) -> Result<
     for (color, p) in PRESSURES.iter().enumerate() {
         let line = speeds.iter().map(|v| (1e3 * v, mu(*p, *v))).collect();
         series.push(Series::line(format!("{:.2} N/mm2", 1e-6 * p), color, line));
-        let dots = measured.points.iter().filter(|m| m[0] == *p).map(|m| (1e3 * m[1], m[2]));
+        let dots =
+            measured.friction.points.iter().filter(|m| m[0] == *p).map(|m| (1e3 * m[1], m[2]));
         series.push(Series::dots("", color, dots.collect()));
     }
     let axes = ["sliding speed [mm/s]", "friction coefficient"];
@@ -36,20 +43,27 @@ pub fn fig_2(compound: &Params, fineness: &Fineness, measured: &Grid) -> Result<
     let rows = PRESSURES
         .iter()
         .flat_map(|p| speeds.iter().map(|v| vec![*p, *v, mu(*p, *v)]).collect::<Vec<_>>());
+    let area = LENGTH * compound.block.width;
     let (soft, stiff) = (slope(&curve, 10e3), slope(&curve, 400e3));
     let slope_at = |v: f64| law.at(250e3, v)[1];
     Ok(Study {
         name: "fig-2",
         title: "Friction characteristic and contact stiffness",
-        notes: format!("Lines: the identified laws. Dots, measured: {}.", measured.origin),
+        notes: format!(
+            "Lines: the identified laws. Dots, measured friction: {}. Dots, measured stiffness: {}.",
+            measured.friction.origin, measured.stiffness.origin
+        ),
         tables: vec![
             ("fig-2-friction.csv".to_string(), csv("pressure_pa,speed_m_s,mu", rows)),
             (
                 "fig-2-stiffness.csv".to_string(),
-                csv("approach_m,mean_pressure_pa", curve.iter().map(|c| c.to_vec())),
+                csv(
+                    "approach_m,mean_pressure_pa,force_n",
+                    curve.iter().map(|c| vec![c[0], c[1], area * c[1]]),
+                ),
             ),
         ],
-        pictures: vec![("fig-2.svg".to_string(), svg(&[friction, stiffness(&curve)], 2)?)],
+        pictures: vec![("fig-2.svg".to_string(), svg(&[friction, stiffness(&curve, area, &measured.stiffness)], 2)?)],
         verdicts: vec![
             Verdict::new(
                 "friction falls with speed at 0.25 N/mm2 and 300 mm/s",
@@ -68,7 +82,7 @@ pub fn fig_2(compound: &Params, fineness: &Fineness, measured: &Grid) -> Result<
 /// Mean pressure over approach of a pressed block at rest: approach \[m\], pressure \[Pa\].
 fn approach(compound: &Params, fineness: &Fineness) -> Result<Vec<[f64; 2]>, Fault> {
     let mut params = compound.clone();
-    (params.block.height, params.block.length) = (0.010, 0.015);
+    (params.block.height, params.block.length) = (0.010, LENGTH);
     params.drive.normal = NormalDrive::Load;
     fineness.apply(&mut params);
     let mut block = TreadBlock::with_reduction(&params, Reductions::default().of(&params)?)?;
@@ -88,9 +102,14 @@ fn slope(curve: &[[f64; 2]], pressure: f64) -> f64 {
     (curve[at][1] - curve[at - 1][1]) / (curve[at][0] - curve[at - 1][0])
 }
 
-fn stiffness(curve: &[[f64; 2]]) -> Panel {
-    let points = curve.iter().map(|c| (1e6 * c[0], 1e-6 * c[1])).collect();
-    let axes = ["approach [um]", "mean pressure [N/mm2]"];
-    let series = vec![Series::line("block and contact, simulated", 0, points)];
+/// Force over approach, simulated on a nominal `area` \[m²\] and measured.
+fn stiffness(curve: &[[f64; 2]], area: f64, measured: &Curve) -> Panel {
+    let points = curve.iter().map(|c| (1e6 * c[0], area * c[1])).collect();
+    let dots = measured.points.iter().map(|[u, force]| (1e6 * u, *force)).collect();
+    let axes = ["approach [um]", "force [N]"];
+    let series = vec![
+        Series::line("block and contact, simulated", 0, points),
+        Series::dots("measured", 1, dots),
+    ];
     Panel::new("contact stiffness, h 10 mm, l 15 mm", axes, series)
 }

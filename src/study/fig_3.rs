@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::cycle_jump::{Wearing, Worn};
 use super::identify::objective::Fineness;
-use super::measured::Grid;
+use super::measured::Measurements;
 use super::paper::PRESSURE;
 use super::plot::{svg, Panel, Series};
 use super::report::{csv, Study, Verdict};
@@ -27,7 +27,12 @@ const CHECKED: f64 = 0.06;
 ///
 /// # Errors
 /// What stops the block.
-pub fn fig_3(compound: &Params, fineness: &Fineness, measured: &Grid) -> Result<Study, Fault> {
+pub fn fig_3(
+    compound: &Params,
+    fineness: &Fineness,
+    measured: &Measurements,
+) -> Result<Study, Fault> {
+    let measured = &measured.wear;
     let points: Vec<Measured> = measured
         .points
         .iter()

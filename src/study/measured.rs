@@ -13,13 +13,24 @@ pub struct Grid {
     pub origin: String,
 }
 
-/// The grids of all studies.
+/// A measured approach of a block and the force that presses it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// Approach \[m\], force \[N\].
+    pub points: Vec<[f64; 2]>,
+    /// Where it comes from.
+    pub origin: String,
+}
+
+/// What is measured, for all studies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measurements {
     /// Friction coefficient.
     pub friction: Grid,
     /// Wear rate: mass worn per area and sliding distance.
     pub wear: Grid,
+    /// Contact stiffness of a block of h 10 mm, l 15 mm.
+    pub stiffness: Curve,
 }
 
 /// Example of a measured characteristic: made up from a falling characteristic with 3 % scatter, only to
@@ -27,41 +38,83 @@ pub struct Measurements {
 const FRICTION: &str = include_str!("../../examples/friction-grid.csv");
 /// Example of a measured wear rate: made up around the published range, only to show the format.
 const WEAR: &str = include_str!("../../examples/wear-rate.csv");
+/// Example of a measured stiffness: made up from a power of the approach with 3 % scatter, only to show the format.
+const STIFFNESS: &str = include_str!("../../examples/stiffness.csv");
+
+/// What is said of an example.
+const MADE_UP: &str =
+    "an example made up to show the format; the paper's own data are not published";
 
 impl Measurements {
-    /// The grids of these files (CSV with a header line: pressure_pa, speed_m_s, and mu or
-    /// rate_kg_m3), the examples where none is given.
+    /// The data of these files (CSV with a header line: pressure_pa, speed_m_s, and mu or rate_kg_m3; or
+    /// approach_m, force_n), the examples where none is given.
     ///
     /// # Errors
     /// [`Fault::File`] for a file that cannot be read, [`Fault::Invalid`] with all its bad lines.
-    pub fn new(friction: Option<&Path>, wear: Option<&Path>) -> Result<Self, Fault> {
-        Ok(Self { friction: grid(friction, FRICTION)?, wear: grid(wear, WEAR)? })
+    pub fn new(
+        friction: Option<&Path>,
+        wear: Option<&Path>,
+        stiffness: Option<&Path>,
+    ) -> Result<Self, Fault> {
+        let (points, origin) = data(stiffness, STIFFNESS, stiffness_line)?;
+        let stiffness = Curve { points, origin };
+        Ok(Self { friction: grid(friction, FRICTION)?, wear: grid(wear, WEAR)?, stiffness })
     }
 }
 
 fn grid(path: Option<&Path>, example: &str) -> Result<Grid, Fault> {
+    let (points, origin) = data(path, example, grid_line)?;
+    Ok(Grid { points, origin })
+}
+
+/// A line of a grid: positive pressure and speed, a finite quantity.
+fn grid_line(cells: &[f64]) -> Result<[f64; 3], &'static str> {
+    match *cells {
+        [p, v, value] if p > 0.0 && v > 0.0 && value.is_finite() => Ok([p, v, value]),
+        _ => Err("pressure [Pa] > 0, sliding speed [m/s] > 0, and the measured number"),
+    }
+}
+
+/// A line of a stiffness.
+fn stiffness_line(cells: &[f64]) -> Result<[f64; 2], &'static str> {
+    match *cells {
+        [u, force] if u.is_finite() && force >= 0.0 => Ok([u, force]),
+        _ => Err("approach [m] and force [N], not negative"),
+    }
+}
+
+/// The points of a file, or of the example, and where they come from.
+fn data<const N: usize>(
+    path: Option<&Path>,
+    example: &str,
+    line: fn(&[f64]) -> Result<[f64; N], &'static str>,
+) -> Result<(Vec<[f64; N]>, String), Fault> {
     let Some(path) = path else {
-        let origin =
-            "an example made up to show the format; the paper's own data are not published";
-        return Ok(Grid { points: points("example", example)?, origin: origin.to_string() });
+        return Ok((points("example", example, line)?, MADE_UP.to_string()));
     };
     let name = path.display().to_string();
     let text = std::fs::read_to_string(path)
         .map_err(|e| Fault::File { path: name.clone(), reason: e.to_string() })?;
-    Ok(Grid { points: points(&name, &text)?, origin: name })
+    Ok((points(&name, &text, line)?, name))
 }
 
-/// Reads the lines after the header; positive pressures and speeds, finite quantities.
-fn points(name: &str, text: &str) -> Result<Vec<[f64; 3]>, Fault> {
+/// Reads the lines after the header.
+fn points<const N: usize>(
+    name: &str,
+    text: &str,
+    read: fn(&[f64]) -> Result<[f64; N], &'static str>,
+) -> Result<Vec<[f64; N]>, Fault> {
     let (mut points, mut problems) = (Vec::new(), Vec::new());
     for (number, line) in text.lines().enumerate().skip(1).filter(|(_, l)| !l.trim().is_empty()) {
-        let cells: Vec<f64> = line.split(',').filter_map(|c| c.trim().parse().ok()).collect();
-        match cells[..] {
-            [p, v, value] if p > 0.0 && v > 0.0 && value.is_finite() => points.push([p, v, value]),
-            _ => problems.push(Problem::new(
+        // A cell that is no number makes the line bad, wherever it stands.
+        let cells: Vec<f64> =
+            line.split(',').map(|c| c.trim().parse().unwrap_or(f64::NAN)).collect();
+        match read(&cells) {
+            Ok(point) => points.push(point),
+            Err(allowed) => problems.push(Problem::new(
                 format!("{name} line {}", number + 1),
                 line,
-                "pressure [Pa] > 0, sliding speed [m/s] > 0, and the measured number",
+                allowed,
                 "mend or delete the line",
             )),
         }
@@ -82,11 +135,14 @@ mod tests {
 
     #[test]
     fn the_examples_are_read_whole_and_every_bad_line_is_named() {
-        let both = Measurements::new(None, None).unwrap();
+        let both = Measurements::new(None, None, None).unwrap();
         assert_eq!(both.friction.points.len(), FRICTION.lines().count() - 1);
         assert_eq!(both.wear.points.len(), WEAR.lines().count() - 1);
+        assert_eq!(both.stiffness.points.len(), STIFFNESS.lines().count() - 1);
         let text = "pressure_pa,speed_m_s,mu\n1e5,0.1,0.9\n1e5,-0.1,0.9\n1e5,fast,1\n";
-        let Err(Fault::Invalid(problems)) = points("mine.csv", text) else { panic!("accepted") };
+        let Err(Fault::Invalid(problems)) = points("mine.csv", text, grid_line) else {
+            panic!("accepted")
+        };
         assert_eq!(problems.len(), 2);
     }
 }

@@ -4,7 +4,9 @@ pub mod cycle_jump;
 pub mod fig_2;
 pub mod fig_3;
 pub mod fig_4;
+pub mod identified;
 pub mod identify;
+pub mod margin;
 pub mod measured;
 pub mod paper;
 pub mod plot;
@@ -15,26 +17,26 @@ pub mod start;
 pub mod table_one;
 pub mod variation;
 pub mod vibration;
+pub mod watch;
 pub mod wear_laws;
 
 use crate::error::{Fault, Problem};
 use crate::params::Params;
 use identify::objective::Fineness;
-use measured::{Grid, Measurements};
+use measured::Measurements;
 use report::Study;
 
-/// How a study is run: from the model alone, or beside a measured grid.
+/// How a study is run: from the model alone, or beside measured data.
 #[derive(Clone, Copy)]
 enum Runner {
     Model(fn(&Params, &Fineness) -> Result<Study, Fault>),
-    Friction(fn(&Params, &Fineness, &Grid) -> Result<Study, Fault>),
-    Wear(fn(&Params, &Fineness, &Grid) -> Result<Study, Fault>),
+    Measured(fn(&Params, &Fineness, &Measurements) -> Result<Study, Fault>),
 }
 
 /// The studies in the order of the paper.
 const STUDIES: &[(&str, Runner)] = &[
-    ("fig-2", Runner::Friction(fig_2::fig_2)),
-    ("fig-3", Runner::Wear(fig_3::fig_3)),
+    ("fig-2", Runner::Measured(fig_2::fig_2)),
+    ("fig-3", Runner::Measured(fig_3::fig_3)),
     ("fig-4", Runner::Model(fig_4::fig_4)),
     ("fig-5", Runner::Model(vibration::fig_5)),
     ("fig-6", Runner::Model(vibration::fig_6)),
@@ -68,8 +70,7 @@ pub fn run(
     }
     let one = |runner: Runner| match runner {
         Runner::Model(study) => study(compound, fineness),
-        Runner::Friction(study) => study(compound, fineness, &measured.friction),
-        Runner::Wear(study) => study(compound, fineness, &measured.wear),
+        Runner::Measured(study) => study(compound, fineness, measured),
     };
     let count = wanted.len();
     let mut studies = Vec::new();

@@ -103,7 +103,11 @@ fn draw(area: &Area, panel: &Panel) -> Result<(), String> {
     if panel.to_scale {
         equal_scales(&mut x, &mut y);
     }
-    let mut builder = ChartBuilder::on(area);
+    let entries = entries(panel);
+    let rows = entries.last().map_or(0, |e| e.row + 1);
+    let (area, below) = area.split_vertically(PANEL.1 - rows * ROW);
+    legend(&below, &entries).map_err(|e| e.to_string())?;
+    let mut builder = ChartBuilder::on(&area);
     builder
         .caption(&panel.title, ("sans-serif", 17))
         .margin(12)
@@ -142,7 +146,7 @@ where
         .map_err(told)?;
     for series in &panel.series {
         let color = COLORS[series.color % COLORS.len()];
-        let drawn = match series.mark {
+        match series.mark {
             Mark::Line => chart.draw_series(LineSeries::new(series.points.iter().copied(), &color)),
             Mark::Dots => chart.draw_series(PointSeries::<_, _, Circle<_, _>, _>::new(
                 series.points.iter().copied(),
@@ -151,20 +155,47 @@ where
             )),
         }
         .map_err(told)?;
-        if !series.name.is_empty() {
-            drawn.label(&series.name).legend(move |(x, y)| {
-                Rectangle::new([(x, y - 4), (x + 14, y + 4)], color.filled())
-            });
-        }
     }
-    if panel.series.iter().any(|s| !s.name.is_empty()) {
-        chart
-            .configure_series_labels()
-            .background_style(WHITE.mix(0.8))
-            .border_style(BLACK.mix(0.3))
-            .label_font(("sans-serif", 13))
-            .draw()
-            .map_err(told)?;
+    Ok(())
+}
+
+/// Height of a row of the legend, below the diagram, where it hides nothing.
+const ROW: u32 = 19;
+/// Left end of its rows.
+const INDENT: i32 = 74;
+
+/// A name in the legend and where it stands.
+struct Entry<'a> {
+    name: &'a str,
+    color: RGBColor,
+    x: i32,
+    row: u32,
+}
+
+/// The names of the series, in rows as wide as the panel.
+fn entries(panel: &Panel) -> Vec<Entry<'_>> {
+    let (mut x, mut row) = (INDENT, 0);
+    let mut out = Vec::new();
+    for series in panel.series.iter().filter(|s| !s.name.is_empty()) {
+        // A letter of the font is 7 pixels wide or a little more.
+        let width = 34 + 7 * series.name.chars().count() as i32;
+        if x > INDENT && x + width > PANEL.0 as i32 {
+            (x, row) = (INDENT, row + 1);
+        }
+        out.push(Entry { name: &series.name, color: COLORS[series.color % COLORS.len()], x, row });
+        x += width;
+    }
+    out
+}
+
+fn legend<'a>(
+    area: &Area<'a>,
+    entries: &[Entry<'_>],
+) -> Result<(), DrawingAreaErrorKind<<SVGBackend<'a> as DrawingBackend>::ErrorType>> {
+    for entry in entries {
+        let (x, y) = (entry.x, (entry.row * ROW) as i32);
+        area.draw(&Rectangle::new([(x, y + 3), (x + 14, y + 11)], entry.color.filled()))?;
+        area.draw(&Text::new(entry.name.to_string(), (x + 20, y), ("sans-serif", 13)))?;
     }
     Ok(())
 }

@@ -35,7 +35,7 @@ pub struct Study {
     pub title: &'static str,
     /// What to know when reading it.
     pub notes: String,
-    /// Tables: file name and CSV.
+    /// Tables: file name and CSV, or text as people read it.
     pub tables: Vec<(String, String)>,
     /// Pictures: file name and SVG.
     pub pictures: Vec<(String, String)>,
@@ -96,7 +96,10 @@ pub fn html(studies: &[Study], compound: &str) -> String {
             out.push_str(&format!("<figure>{}</figure>\n", page::wide(name, svg)));
         }
         for (name, text) in &study.tables {
-            if text.lines().count() <= 40 {
+            if name.ends_with(".txt") {
+                let listing = format!("<pre>{}</pre>", escape(text));
+                out.push_str(&page::wide(name, &listing));
+            } else if text.lines().count() <= 40 {
                 out.push_str(&format!(
                     "<details open><summary>{name}</summary>{}</details>\n",
                     page::wide(name, &grid(text))

@@ -170,7 +170,8 @@ pub fn fig_8(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         title: "A rolling tyre's block in four phases",
         notes: "10 m/s, 2 % braking slip, patch 120 mm, belt radius 0.3 m, 0.25 N/mm2 in the middle; the \
                 paper names no numbers. The belt carries the block from left to right through the \
-                patch's coordinate; shapes are to scale."
+                patch's coordinate; shapes are to scale. The face lies below the road by what the \
+                contact springs, its roughness, are compressed."
             .to_string(),
         tables: vec![("fig-8-shapes.csv".to_string(), csv("phase,x_m,z_m", nodes))],
         pictures: vec![("fig-8.svg".to_string(), svg(&panels, 2)?)],

@@ -2,7 +2,9 @@
 
 use std::fmt::Write;
 
+use super::identified;
 use super::identify::objective::{compare, Compared, Fineness};
+use super::margin;
 use super::paper::{Cell, Column, SPEEDS, TABLE_1};
 use super::plot::{svg, Panel, Series};
 use super::report::{Study, Verdict};
@@ -131,6 +133,8 @@ pub fn table_1(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     let reductions = Reductions::default();
     let [table, from_rest] = [Start::Braking, Start::Rest]
         .map(|start| TableOne::simulate(compound, &TABLE_1, fineness, start, &reductions));
+    let identification = identified::of(compound);
+    let changed = margin::tables(compound, &TABLE_1, fineness, &reductions);
     let mut series = Vec::new();
     for (color, column) in TABLE_1.iter().enumerate() {
         let cells = || table.cells.iter().filter(|c| c.column.name == column.name);
@@ -147,11 +151,21 @@ pub fn table_1(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     Ok(Study {
         name: "table-1",
         title: "Stick-slip frequencies over geometry and speed",
-        notes: format!("{}{}", table.text(), from_rest.changes(&table)),
-        tables: vec![
+        notes: format!(
+            "{}{}{}",
+            from_rest.changes(&table),
+            margin::text(&changed),
+            identification.as_ref().map_or("", |i| &i.notes)
+        ),
+        tables: [
+            ("table-1.txt".to_string(), table.text()),
             ("table-1.csv".to_string(), table.csv()),
             ("table-1-from-rest.csv".to_string(), from_rest.csv()),
-        ],
+            ("table-1-margin.csv".to_string(), margin::csv(&changed)),
+        ]
+        .into_iter()
+        .chain(identification.into_iter().flat_map(|i| i.tables))
+        .collect(),
         pictures: vec![("table-1.svg".to_string(), picture)],
         verdicts: table.verdicts(),
     })

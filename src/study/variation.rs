@@ -8,6 +8,7 @@ use super::plot::{Panel, Series};
 use super::report::csv;
 use super::slides::{slide, sticking, Point, Reductions};
 use super::start::Start;
+use super::watch::{self, SILENCE};
 use crate::error::Fault;
 use crate::metrics::{stick_slip, Recorder, StickSlip};
 use crate::params::Params;
@@ -93,7 +94,12 @@ fn simulate(run: Run, reductions: &Reductions) -> Result<Ran, Fault> {
         traces.stick.push(sticking(o, STUCK * run.speed));
         Ok(())
     })?;
-    let metrics = stick_slip(&recorder.trace(), run.speed);
+    let trace = recorder.trace();
+    let mut metrics = stick_slip(&trace, run.speed);
+    if metrics.velocity_amplitude > SILENCE * run.speed {
+        let first = trace.time.partition_point(|t| *t < metrics.settled_from);
+        metrics.frequency = watch::stick_slip(&trace.time[first..], &trace.velocity[first..]);
+    }
     Ok((run, traces, metrics))
 }
 

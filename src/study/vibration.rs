@@ -19,7 +19,7 @@ pub fn fig_5(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         run.params.rubber.young_modulus = e;
         Run { label: format!("E = {:.0} N/mm2", 1e-6 * e), value: e, ..run }
     });
-    let damping = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0].map(|factor: f64| {
+    let damping = FACTORS.map(|factor: f64| {
         let mut run = base.clone();
         run.params.rubber.stiffness_damping *= factor;
         let beta = run.params.rubber.stiffness_damping;
@@ -37,23 +37,21 @@ pub fn fig_5(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         title: "Damping factor".to_string(),
         runs: run_all(damping.to_vec())?,
     };
-    let mut verdicts = trend(&modulus, "E", [false, true]);
-    verdicts.extend(trend(&damping, "beta", [false, true]));
-    let silent = damping.frequencies().last().is_some_and(|hz| *hz == 0.0);
+    let notes = format!("{}{}", modulus.beyond_small_strain(), of_damping(&damping));
+    let mut verdicts = trend(&modulus.runs, "E", [false, true]);
+    let light = &damping.runs[..swinging(&damping)];
+    let to = light.last().map_or(0.0, |r| 1e6 * r.0.value);
+    verdicts.extend(trend(light, &format!("beta up to {to:.0} us"), [false, true]));
     let first = damping.runs.iter().find(|r| r.2.frequency == 0.0).map(|r| r.0.value);
     verdicts.push(Verdict::new(
         "for large damping the oscillation vanishes",
-        silent,
-        first.map_or("never up to 3 beta".to_string(), |b| format!("from {:.0} us on", 1e6 * b)),
+        damping.runs.last().is_some_and(|r| r.2.frequency == 0.0),
+        first.map_or("never".to_string(), |b| format!("from {:.0} us on", 1e6 * b)),
     ));
     Ok(Study {
         name: "fig-5",
         title: "Young's modulus and material damping",
-        notes: format!(
-            "{}The values of beta are lost in the paper; ours run from half to three times the identified \
-             one.",
-            modulus.beyond_small_strain()
-        ),
+        notes,
         tables: vec![modulus.summary(), damping.summary(), modulus.traces(), damping.traces()],
         pictures: vec![(
             "fig-5.svg".to_string(),
@@ -63,10 +61,44 @@ pub fn fig_5(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     })
 }
 
+/// Damping over the identified one: from a lightly damped block to one that is silent.
+const FACTORS: [f64; 7] = [0.3, 0.4, 0.6, 0.75, 1.0, 1.5, 3.0];
+/// First eigenfrequency of the base case's free block \[Hz\]: Table 1, h10l45.
+const FREE: f64 = 2876.0;
+/// Damping over the critical one at [`FREE`], pi f0 beta, up to which a free block swings rather than creeps.
+const SWINGS: f64 = 0.75;
+
+/// Damping over the critical one of the base case's first mode: pi f0 beta.
+fn critical(beta: f64) -> f64 {
+    std::f64::consts::PI * FREE * beta
+}
+
+/// How many of the runs, in the order of rising damping, are of blocks that swing.
+fn swinging(damping: &Variation) -> usize {
+    damping.runs.iter().take_while(|r| critical(r.0.value) <= SWINGS).count()
+}
+
+/// What to know of the damping's range.
+fn of_damping(damping: &Variation) -> String {
+    let (light, heavy) = damping.runs.split_at(swinging(damping));
+    let to = light.last().map_or(0.0, |r| 1e6 * r.0.value);
+    let told: Vec<String> = heavy
+        .iter()
+        .filter(|r| r.2.frequency > 0.0)
+        .map(|(run, _, m)| format!("{:.0} Hz at {:.0} us", m.frequency, 1e6 * run.value))
+        .collect();
+    let beyond = if told.is_empty() { "silence".to_string() } else { told.join(", ") };
+    format!(
+        "The values of beta are lost in the paper. The trends are asked up to {to:.0} us, {SWINGS} of the critical \
+         damping of the first mode. Beyond, the block does not swing back but creeps, the more slowly the more it is \
+         damped: {beyond}."
+    )
+}
+
 /// Verdicts on how amplitude and frequency go with a quantity, over the runs that oscillate; `rises`:
 /// amplitude, frequency.
-fn trend(variation: &Variation, quantity: &str, rises: [bool; 2]) -> Vec<Verdict> {
-    let loud: Vec<&Ran> = variation.runs.iter().filter(|r| r.2.frequency > 0.0).collect();
+fn trend(runs: &[Ran], quantity: &str, rises: [bool; 2]) -> Vec<Verdict> {
+    let loud: Vec<&Ran> = runs.iter().filter(|r| r.2.frequency > 0.0).collect();
     let values = [
         ("amplitude", loud.iter().map(|r| r.2.displacement_amplitude).collect::<Vec<_>>()),
         ("frequency", loud.iter().map(|r| r.2.frequency).collect()),
@@ -109,6 +141,7 @@ pub fn fig_6(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
     };
     let hz = speeds.frequencies();
     let stick: Vec<f64> = speeds.runs.iter().map(|r| most_stuck(&r.1, &r.2)).collect();
+    let time: Vec<f64> = speeds.runs.iter().map(|r| 1e2 * time_stuck(&r.1, &r.2)).collect();
     let told = |i: usize| match hz[i] {
         hz if hz > 0.0 => format!("{hz:.0} Hz"),
         _ => "silent".to_string(),
@@ -134,15 +167,23 @@ pub fn fig_6(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         Verdict::new(
             "no prominent sticking phase at 400 mm/s",
             stick[4] < 0.5,
-            format!("up to {:.0} % stuck", 1e2 * stick[4]),
+            format!("up to {:.0} % stuck, {:.0} % of the time", 1e2 * stick[4], time[4]),
         ),
     ];
     Ok(Study {
         name: "fig-6",
         title: "Sliding speed",
-        notes: "A sticking phase: more than half of the contact slides slower than 15 % of the road speed \
-                at some time of the settled part."
-            .to_string(),
+        notes: format!(
+            "A sticking phase: more than half of the contact slides slower than 15 % of the road speed at some time \
+             of the settled part. It does so for {:.0}, {:.0}, {:.0} and {:.0} % of the time at 100, 200, 300 and \
+             400 mm/s. The identified damping is {:.2} of the critical one of the free block's first mode: such a \
+             block does not swing through, it is let go and caught again, also near its critical speed.",
+            time[1],
+            time[2],
+            time[3],
+            time[4],
+            critical(compound.rubber.stiffness_damping)
+        ),
         tables: vec![speeds.summary(), speeds.traces()],
         pictures: vec![(
             "fig-6.svg".to_string(),
@@ -161,6 +202,18 @@ fn most_stuck(traces: &Traces, metrics: &StickSlip) -> f64 {
         .filter(|(t, _)| **t >= metrics.settled_from)
         .map(|(_, s)| *s)
         .fold(0.0, f64::max)
+}
+
+/// Share of the time of the settled part in which more than half of the contact sticks.
+fn time_stuck(traces: &Traces, metrics: &StickSlip) -> f64 {
+    let settled =
+        traces.time.iter().zip(&traces.stick).filter(|(t, _)| **t >= metrics.settled_from);
+    let (mut stuck, mut all) = (0.0, 0.0_f64);
+    for (_, share) in settled {
+        stuck += f64::from(u8::from(*share > 0.5));
+        all += 1.0;
+    }
+    stuck / all.max(1.0)
 }
 
 /// Figure 7: pressure and geometry.
@@ -193,7 +246,7 @@ pub fn fig_7(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         title: "Block geometry".to_string(),
         runs: run_all(geometries.to_vec())?,
     };
-    let mut verdicts = trend(&pressure, "pressure", [true, false]);
+    let mut verdicts = trend(&pressure.runs, "pressure", [true, false]);
     verdicts.truncate(1);
     let low = pressure.frequencies()[0];
     verdicts.push(Verdict::new(

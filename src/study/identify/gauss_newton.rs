@@ -7,6 +7,11 @@ use super::objective::{Problem, OUTLIER};
 /// Step of the finite differences in the unit interval: large enough for the noise of a measured
 /// frequency (about 1e-4), small enough for the curvature.
 const DIFFERENCE: f64 = 0.01;
+/// Share of that step where a cell jumps within it.
+const NEARER: f64 = 0.3;
+/// Change of a residual that no slope describes, over the whole step and over that share of it.
+const JUMP: f64 = 0.1;
+const STEEP: f64 = 0.2;
 
 /// Where a local search ended.
 #[derive(Clone, Debug)]
@@ -27,26 +32,30 @@ fn weights(residuals: &[f64]) -> DVector<f64> {
     )
 }
 
-/// Jacobian of the residuals at `x` by forward differences (backward at the upper bound).
+/// Jacobian of the residuals at `x`. A cell that jumps between the two points, to another limit cycle or into silence,
+/// has no slope there: it is asked again on the other side, and then nearer; where it always jumps, its slope is 0.
 pub fn jacobian(problem: &Problem<'_>, x: &[f64], residuals: &[f64]) -> DMatrix<f64> {
     let columns: Vec<DVector<f64>> = (0..x.len())
         .map(|i| {
-            let step = if x[i] + DIFFERENCE > 1.0 { -DIFFERENCE } else { DIFFERENCE };
-            let mut there = x.to_vec();
-            there[i] += step;
-            let moved = problem.residuals(&there);
-            // A cell that falls silent between the two points has no slope.
-            DVector::from_iterator(
-                residuals.len(),
-                moved.iter().zip(residuals).map(|(b, a)| {
-                    let slope = (b - a) / step;
-                    if (b - a).abs() > 0.15 {
-                        0.0
-                    } else {
-                        slope
+            let mut slopes = vec![None; residuals.len()];
+            for (share, jump) in [(1.0, JUMP), (-1.0, JUMP), (NEARER, STEEP), (-NEARER, STEEP)] {
+                let step = share * DIFFERENCE;
+                if !(0.0..=1.0).contains(&(x[i] + step)) {
+                    continue;
+                }
+                let mut there = x.to_vec();
+                there[i] += step;
+                let moved = problem.residuals(&there);
+                for ((slope, b), a) in slopes.iter_mut().zip(&moved).zip(residuals) {
+                    if slope.is_none() && (b - a).abs() < jump {
+                        *slope = Some((b - a) / step);
                     }
-                }),
-            )
+                }
+                if slopes.iter().all(Option::is_some) {
+                    break;
+                }
+            }
+            DVector::from_iterator(slopes.len(), slopes.iter().map(|slope| slope.unwrap_or(0.0)))
         })
         .collect();
     DMatrix::from_columns(&columns)

@@ -6,8 +6,9 @@ use super::space::{apply, Unknown};
 use crate::error::Fault;
 use crate::params::Params;
 use crate::study::paper::{Cell, Column, PRESSURE, SPEEDS};
-use crate::study::slides::{observe, Observed, Point, Reductions};
+use crate::study::slides::{observe, Point, Reductions};
 use crate::study::start::Start;
+use crate::study::watch::Observed;
 
 /// How finely the runs of an identification are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,7 +74,7 @@ impl Compared {
 
     /// Model frequency \[Hz\], 0 where silent.
     pub fn hz(&self) -> f64 {
-        self.observed.as_ref().map_or(0.0, |o| o.metrics.frequency)
+        self.observed.as_ref().map_or(0.0, |o| o.frequency)
     }
 
     /// Relative error of the frequency where both oscillate.
@@ -101,9 +102,12 @@ impl Compared {
         let hz = self.hz();
         let wrong = WRONG + STEEPNESS * (observed.growth.abs() / RATE_OF_SLOPE).min(0.25);
         match self.cell() {
-            Cell::Hz(paper) if hz > 0.0 => snap_ratio(hz, paper).clamp(-1.0, 1.0),
+            Cell::Hz(paper) if hz > 0.0 => (hz / paper).ln().clamp(-1.0, 1.0),
             Cell::Hz(_) | Cell::Between(..) if hz <= 0.0 => wrong,
-            Cell::Between(low, high) => (hz / low).ln().min(0.0) + (hz / high).ln().max(0.0),
+            Cell::Between(low, high) => {
+                let (below, above) = ((hz / low).ln().min(0.0), (hz / high).ln().max(0.0));
+                below + above + TILT * (hz.clamp(low, high) / (low * high).sqrt()).ln()
+            }
             _ if hz <= 0.0 => 0.0,
             _ => wrong,
         }
@@ -118,26 +122,17 @@ const RATE_OF_SLOPE: f64 = 5e4;
 /// Residual over that share.
 const STEEPNESS: f64 = 4.0;
 
-/// Logarithm of the frequency ratio. Where every second or third snap differs a little, the period
-/// counts that many snaps: then the rate of snaps is compared, at a small price.
-fn snap_ratio(hz: f64, paper: f64) -> f64 {
-    let ratio = |snaps: f64| (snaps * hz / paper).ln();
-    let plain = ratio(1.0);
-    let several = [2.0, 3.0, 4.0].map(ratio);
-    let nearest = several.into_iter().min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or(plain);
-    if nearest.abs() + 0.1 < plain.abs() {
-        nearest + 0.05_f64.copysign(nearest)
-    } else {
-        plain
-    }
-}
+/// Where the paper's digits are lost: residual over the logarithm of the frequency within its bounds, so that a search
+/// feels where it is.
+pub const TILT: f64 = 0.1;
 
-/// Duration of the run of a cell \[s\]: a vibration grows or dies, then eight periods or more are seen.
-fn duration(cell: Cell) -> f64 {
+/// Longest duration of the run of a cell \[s\], and for how long its settled vibration is seen: twelve periods at the
+/// paper's frequency or more. A vibration that grows slowly has the time to; one that has settled is not awaited.
+fn durations(cell: Cell) -> (f64, f64) {
     match cell {
-        Cell::Hz(hz) => (17.5e-3 + 13.5 / hz).max(25e-3),
-        Cell::Between(..) => 32.5e-3,
-        Cell::Silent => 40e-3,
+        Cell::Hz(hz) => (70e-3_f64.max(24.0 / hz), (12.0 / hz).max(12e-3)),
+        Cell::Between(..) => (70e-3, 12e-3),
+        Cell::Silent => (40e-3, 12e-3),
     }
 }
 
@@ -175,14 +170,10 @@ fn observe_cell(
     params.block.height = column.height;
     params.block.length = column.length;
     fineness.apply(&mut params);
-    let point = Point {
-        speed: SPEEDS[row],
-        pressure: PRESSURE,
-        start,
-        duration: duration(column.cells[row]),
-        step: fineness.step,
-    };
-    observe(&params, reductions, point)
+    let (duration, seen) = durations(column.cells[row]);
+    let point =
+        Point { speed: SPEEDS[row], pressure: PRESSURE, start, duration, step: fineness.step };
+    observe(&params, reductions, point, seen)
 }
 
 /// E/ρ \[m²/s²\] at which the eigenfrequencies of the free blocks fit Table 1 best.
@@ -212,6 +203,7 @@ pub fn modulus_over_density(
 pub const OUTLIER: f64 = 0.15;
 
 /// The problem that a search solves: residuals of the cells over the unknowns.
+#[derive(Clone, Copy)]
 pub struct Problem<'a> {
     /// What is not unknown.
     pub base: &'a Params,
@@ -235,9 +227,14 @@ impl Problem<'_> {
 
     /// Residuals at `x`, cell by cell.
     pub fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        let params = self.params(x);
-        let mut cells = self.compare(x);
-        cells.par_iter_mut().for_each(|cell| self.tell_how_silent(cell, &params));
+        self.residuals_of(&self.params(x))
+    }
+
+    /// Residuals of any parameters, cell by cell.
+    pub fn residuals_of(&self, params: &Params) -> Vec<f64> {
+        let Self { columns, fineness, reductions, .. } = self;
+        let mut cells = compare(params, columns, fineness, Start::Braking, reductions);
+        cells.par_iter_mut().for_each(|cell| self.tell_how_silent(cell, params));
         cells.iter().map(Compared::residual).collect()
     }
 

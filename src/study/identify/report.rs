@@ -52,6 +52,30 @@ pub fn markdown(task: &Task, found: &Identified) -> String {
     out
 }
 
+/// The parameters with their uncertainty as CSV: one standard deviation down and up.
+pub fn parameters_csv(task: &Task, found: &Identified) -> String {
+    let mut out = String::from("parameter,value,from,to,share_of_range\n");
+    for ((unknown, x), deviation) in
+        task.unknowns.iter().zip(&found.local.x).zip(found.local.deviations())
+    {
+        let value = get(&found.params, unknown.name);
+        let [from, to] = [x - deviation, x + deviation].map(|x| unknown.value(x));
+        let _ = writeln!(out, "{},{value:.6e},{from:.3e},{to:.3e},{deviation:.3}", unknown.name);
+    }
+    out
+}
+
+/// What the data pin down as CSV: directions in unit intervals, the best determined first.
+pub fn directions_csv(task: &Task, found: &Identified) -> String {
+    let mut out = String::from("pinned_down,deviation,direction\n");
+    for direction in found.local.directions() {
+        let pinned = if direction.deviation < UNDETERMINED { "yes" } else { "no" };
+        let words = combination(&task.unknowns, &direction.components);
+        let _ = writeln!(out, "{pinned},{:.3},{words}", direction.deviation);
+    }
+    out
+}
+
 /// The main parts of a direction in words.
 fn combination(unknowns: &[Unknown], components: &[f64]) -> String {
     let mut parts: Vec<(f64, &str)> =
