@@ -65,7 +65,7 @@ impl TreadBlock {
     }
 
     /// Displacements \[m\] of all mesh nodes relative to the clamped face, block frame: x and z per
-    /// node, in the order of [`Mesh::position`].
+    /// node, in the order of [`crate::mesh::Mesh::position`].
     pub fn field(&self) -> Vec<[f64; 2]> {
         let scale = (self.params.rubber.density * self.params.block.width).sqrt();
         let value = |dof: Option<usize>| {

@@ -239,10 +239,10 @@ impl Face {
         let (sign, slope) = smoothed_sign(slip, self.shear_smoothing);
         let (shear, pull) = (Pack::splat(self.shear_strength), Pack::splat(self.pull_off));
         t.tangential = t.tangential - shear * share * sign;
-        t.slip_slope = t.slip_slope + shear * share * slope;
-        t.coupling = t.coupling + shear * share_by_lift * sign;
+        t.slip_slope += shear * share * slope;
+        t.coupling += shear * share_by_lift * sign;
         t.normal = t.normal - pull * share;
-        t.approach_slope = t.approach_slope + pull * share_by_lift;
+        t.approach_slope += pull * share_by_lift;
     }
 }
 
