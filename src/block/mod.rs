@@ -218,34 +218,35 @@ impl TreadBlock {
 
     /// Everything that changes while the block moves, as plain numbers in a fixed order and count.
     pub fn save(&self, out: &mut Vec<f64>) {
-        out.extend([self.wear_mass, self.integrator.last_h()]);
+        out.push(self.wear_mass);
         out.extend(self.motion.to_numbers());
         self.memory.save(out);
         self.state.save(out);
+        self.integrator.save(out);
     }
 
     /// Restores what [`Self::save`] wrote; `false`, with the block unchanged, if the count does not
     /// fit or a number is not finite.
     pub fn restore(&mut self, from: &[f64]) -> bool {
-        if from.iter().any(|x| !x.is_finite()) {
+        let mut own = Vec::new();
+        self.save(&mut own);
+        if from.len() != own.len() || from.iter().any(|x| !x.is_finite()) {
             return false;
         }
-        let mut state = self.state.clone();
-        let Some((head, rest)) = from.split_at_checked(2) else { return false };
-        let Some((motion, rest)) = rest.split_first_chunk() else { return false };
-        let mut memory = self.memory.clone();
-        let Some(rest) = memory.restore(rest) else { return false };
-        if !state.restore(rest).is_some_and(<[f64]>::is_empty) {
-            return false;
-        }
-        self.memory = memory;
-        self.wear_mass = head[0];
-        self.integrator.resume(head[1]);
-        self.motion = Kinematics::from_numbers(motion);
-        self.state = state;
+        let restored = self.read(from).is_some_and(<[f64]>::is_empty);
         self.observe();
         self.memory.show(&self.params.effect, &mut self.outputs);
-        true
+        restored
+    }
+
+    /// Reads what [`Self::save`] wrote and returns the rest.
+    fn read<'a>(&mut self, from: &'a [f64]) -> Option<&'a [f64]> {
+        let (wear_mass, rest) = from.split_first()?;
+        let (motion, rest) = rest.split_first_chunk()?;
+        self.wear_mass = *wear_mass;
+        self.motion = Kinematics::from_numbers(motion);
+        let rest = self.memory.restore(rest)?;
+        self.integrator.restore(self.state.restore(rest)?)
     }
 }
 

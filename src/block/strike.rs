@@ -15,6 +15,7 @@ impl TreadBlock {
             self.state.w[m] += added;
             self.state.dw[m] -= self.linear.damping * self.linear.omega2[m] * added;
         }
+        self.integrator.start_afresh();
         self.observe();
     }
 }

@@ -40,20 +40,22 @@ fn add_rows<const N: usize>(
     start: usize,
 ) -> usize {
     let mut sums = [[Pack::default(); N]; 2];
-    let mut from = start + at;
+    let from = start + at;
+    // Said once, so that it need not be checked in every column.
+    assert!(from + N <= height, "rows beyond the end of a column");
+    let mut columns = columns.chunks_exact(height);
     let pairs = x.as_chunks::<2>();
     for pair in pairs.0 {
-        for side in 0..2 {
-            let column = &columns[from..from + N];
-            let factor = Pack::splat(pair[side]);
-            for n in 0..N {
-                sums[side][n] = factor.mul_add(column[n], sums[side][n]);
-            }
-            from += height;
+        let [Some(even), Some(odd)] = [columns.next(), columns.next()] else { break };
+        let (even, odd) = (&even[from..from + N], &odd[from..from + N]);
+        let [x, y] = pair.map(Pack::splat);
+        for n in 0..N {
+            sums[0][n] = x.mul_add(even[n], sums[0][n]);
+            sums[1][n] = y.mul_add(odd[n], sums[1][n]);
         }
     }
-    if let [last] = pairs.1 {
-        let column = &columns[from..from + N];
+    if let ([last], Some(column)) = (pairs.1, columns.next()) {
+        let column = &column[from..from + N];
         for n in 0..N {
             sums[0][n] = Pack::splat(*last).mul_add(column[n], sums[0][n]);
         }
@@ -135,14 +137,16 @@ pub fn invert(matrix: &mut [f64], size: usize) -> bool {
     true
 }
 
-/// Dot product of numbers in packs, in eight interleaved partial sums.
+/// Dot product of numbers in packs, in eight interleaved partial sums that are left in `sums`: what ends in
+/// memory becomes vector instructions.
 #[inline(always)]
-pub fn dot(a: &[Pack], b: &[Pack]) -> f64 {
-    let mut sums = Pack::default();
+pub fn dot(a: &[Pack], b: &[Pack], sums: &mut Pack) -> f64 {
+    let mut own = Pack::default();
     for (x, y) in a.iter().zip(b) {
-        sums = x.mul_add(*y, sums);
+        own = x.mul_add(*y, own);
     }
-    sums.sum()
+    *sums = own;
+    own.sum()
 }
 
 #[cfg(test)]

@@ -10,12 +10,38 @@ use crate::pack::{Pack, LANES};
 #[inline(always)]
 pub fn invert_rows(matrix: &mut [Pack], n: usize, size: usize, room: &mut [Pack]) -> bool {
     let matrix = &mut matrix[..size * n];
+    if n == 1 {
+        if let Ok(rows) = <&mut [Pack; LANES]>::try_from(&mut *matrix) {
+            return invert_eight(rows);
+        }
+    }
     for pair in 0..size / 2 {
         if !two_pivots(matrix, n, 2 * pair, room) {
             return false;
         }
     }
     size.is_multiple_of(2) || last_pivot(matrix, n, size - 1, room)
+}
+
+/// [`invert_rows`] for eight rows of one pack: nothing is left to be checked or to be found out at run time.
+#[inline(always)]
+fn invert_eight(rows: &mut [Pack; LANES]) -> bool {
+    let mut k = 0;
+    while k < LANES - 1 {
+        let (x, y) = (rows[k], rows[k + 1]);
+        let block = [[x.0[k], x.0[k + 1]], [y.0[k], y.0[k + 1]]];
+        let Some(block) = invert_block(block) else { return false };
+        let [[corner, upper], [lower, q]] = block.map(|row| row.map(Pack::splat));
+        let (x, y) = (KEEP[k].mul_add(x, UNIT[k]), KEEP[k].mul_add(y, UNIT[k + 1]));
+        let (a, b) = (corner.mul_add(x, upper * y), lower.mul_add(x, q * y));
+        for row in rows.iter_mut() {
+            let (x, y) = (Pack::splat(row.0[k]), Pack::splat(row.0[k + 1]));
+            *row = (-y).mul_add(b, (-x).mul_add(a, KEEP[k] * *row));
+        }
+        (rows[k], rows[k + 1]) = (a, b);
+        k += 2;
+    }
+    true
 }
 
 /// Eliminates columns `k` and `k` + 1; both lie in the same pack, since `k` is even.
@@ -101,6 +127,17 @@ pub const UNIT: [Pack; LANES] = {
         lane += 1;
     }
     unit
+};
+
+/// Ones but for zeros in each lane and the next one.
+const KEEP: [Pack; LANES] = {
+    let mut keep = [Pack([1.0; LANES]); LANES];
+    let mut lane = 0;
+    while lane < LANES - 1 {
+        (keep[lane].0[lane], keep[lane].0[lane + 1]) = (0.0, 0.0);
+        lane += 1;
+    }
+    keep
 };
 
 #[cfg(test)]

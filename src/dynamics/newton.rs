@@ -7,22 +7,33 @@ use super::matrices::{FlatMatrices, StageMatrices};
 use super::stage::Stage;
 use super::{dense, gauss_jordan};
 use crate::contact::Traction;
-use crate::pack::{Aligned, Pack, LANES};
+use crate::pack::{larger, Aligned, Pack, LANES};
 
 /// Largest fall of friction with speed that a direction follows, as a share of the block's own
 /// resistance: far from the solution the tangent of a steeper fall overshoots, near it only the
 /// tangent converges fast.
 const STEEPEST_FALL: [f64; 2] = [0.3, 0.95];
-/// Iterations in which the solution is taken to be near. Before them it may be far; after them the
-/// fall is too steep for the tangent, and the flatter slope creeps to a solution instead.
+/// Last change, as a share of the smoothing speed, below which the solution is taken to be near, if changes fall.
+const NEAR_CHANGE: f64 = 3.0;
+/// Iterations in which the solution is taken to be near in any case. After them the fall is too steep for the
+/// tangent, and the flatter slope creeps to a solution instead.
 const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
 
 /// Iterations before which the inverse of an earlier iteration may serve, while slopes are near.
 const CHORDS: usize = 4;
 /// Change of a slope, as a share of the node's resistance, over which an inverse still serves.
-const SAME_SLOPE: f64 = 0.25;
+const SAME_SLOPE: f64 = 0.1;
+/// Changes are not taken to shrink more slowly than this.
+const WORST_CONTRACTION: f64 = 0.9;
 /// Ratio of a change to the one before, above which the inverse is made anew.
 const SLOW: f64 = 0.2;
+/// Share of the sliding speed that adds to the smoothing speed where a change is judged: friction changes over
+/// the smoothing speed where a node sticks and over decades of speed where it slips.
+const SLIP_SHARE: f64 = 0.1;
+
+/// Last two changes of a stage's velocities, as shares of the speed over which friction changes: the last but one
+/// and the last.
+pub(super) type Changes = [f64; 2];
 
 /// A direction and the buffers to find it; vectors per node are padded to full packs.
 #[derive(Clone, Debug)]
@@ -45,6 +56,10 @@ pub(super) struct Newton {
     /// K⁻¹, column by column, for the slopes in `slopes`; see [`Self::renew_inverse`].
     inverse: Aligned,
     known: bool,
+    /// `slopes` were restored and K⁻¹ is still to be made of them.
+    to_make: bool,
+    /// Changes shrink by this factor per iteration, as far as is known \[-\].
+    pub(super) contraction: f64,
     /// No tangent is steeper than the first of [`STEEPEST_FALL`], in all iterations.
     gentle: bool,
     compact: Aligned,
@@ -72,6 +87,8 @@ impl Newton {
             matrix: Aligned::zeros(4 * nodes * nodes),
             inverse: Aligned::zeros(nodes * stride),
             known: false,
+            to_make: false,
+            contraction: WORST_CONTRACTION,
             gentle: false,
             compact: Aligned::zeros(2 * nodes),
             slopes: [row(), row(), row(), row()],
@@ -83,19 +100,51 @@ impl Newton {
 
     /// The inverse is made anew before it is used again.
     pub(super) fn forget(&mut self) {
-        self.known = false;
+        (self.known, self.to_make) = (false, false);
+    }
+
+    /// What a stage carries to the next one, as numbers.
+    pub(super) fn save(&self, out: &mut Vec<f64>) {
+        out.extend([f64::from(u8::from(self.known || self.to_make)), self.contraction]);
+        out.extend_from_slice(&self.slopes[0]);
+        out.extend_from_slice(&self.slopes[1]);
+    }
+
+    /// Reads what [`Self::save`] wrote; returns the rest, or `None` if there is too little.
+    pub(super) fn restore<'a>(&mut self, from: &'a [f64]) -> Option<&'a [f64]> {
+        let stride = self.followed.len();
+        let ([known, contraction], rest) = from.split_first_chunk()?;
+        let (slopes, rest) = rest.split_at_checked(2 * stride)?;
+        self.forget();
+        (self.to_make, self.contraction) = (*known == 1.0, contraction.clamp(0.0, WORST_CONTRACTION));
+        self.slopes[0].copy_from_slice(&slopes[..stride]);
+        self.slopes[1].copy_from_slice(&slopes[stride..]);
+        Some(rest)
+    }
+
+    /// Estimated error after a change, from how changes shrink (Hairer and Wanner, Solving ODEs II, IV.8); the
+    /// first change of a stage is judged by the stage before.
+    pub(super) fn error_after(&mut self, iteration: usize, changes: Changes) -> f64 {
+        if iteration > 1 {
+            // One good pair of changes does not make a contraction.
+            let measured = larger(changes[1] / changes[0], 0.3 * self.contraction);
+            self.contraction = if measured < WORST_CONTRACTION { measured } else { WORST_CONTRACTION };
+        }
+        changes[1] * self.contraction / (1.0 - self.contraction)
     }
 
     /// Creeps to a solution that the tangent misses: slowly, but its matrix is always positive definite.
     pub(super) fn set_gentle(&mut self, gentle: bool) {
         self.gentle = gentle;
-        self.known = false;
+        self.forget();
     }
 
     /// Largest fall that the direction of an iteration follows, as a share of the block's resistance.
     #[inline(always)]
-    fn steepest_fall(&self, iteration: usize) -> f64 {
-        STEEPEST_FALL[usize::from(!self.gentle && NEAR.contains(&iteration))]
+    fn steepest_fall(&self, iteration: usize, [before, last]: Changes) -> f64 {
+        let falling = iteration == 1 || (last < NEAR_CHANGE && last < before);
+        let near = NEAR.contains(&iteration) || (falling && iteration < *NEAR.start());
+        STEEPEST_FALL[usize::from(near && !self.gentle)]
     }
 
     /// Keeps K⁻¹ = (B + g − c Pᵀ)⁻¹ for the slopes as they stand, unless it holds for slopes that
@@ -107,13 +156,17 @@ impl Newton {
         m: &FlatMatrices,
         t: &Traction,
         iteration: usize,
-        slow: bool,
+        changes: Changes,
     ) -> bool {
-        let steepest = Pack::splat(-self.steepest_fall(iteration));
+        if self.to_make {
+            self.forget();
+            self.known = self.invert(n, m);
+        }
+        let steepest = Pack::splat(-self.steepest_fall(iteration, changes));
         let own = &m.resistance.packs()[..n];
         let (slip_slope, coupling) = (&t.slip_slope.packs()[..n], &t.coupling.packs()[..n]);
         let followed = &mut self.followed.packs_mut()[..n];
-        let [kept_slope, kept_coupling, _, kept_normal] = &mut self.slopes;
+        let [kept_slope, kept_coupling, ..] = &mut self.slopes;
         let kept_slope = &mut kept_slope.packs_mut()[..n];
         let mut farthest = Pack::splat(f64::MIN);
         for k in 0..n {
@@ -122,12 +175,23 @@ impl Newton {
             let allowed = Pack::splat(SAME_SLOPE) * (own[k] + followed[k]);
             farthest = farthest.max((followed[k] - kept_slope[k]).abs() - allowed);
         }
+        self.room.packs_mut()[0] = farthest;
+        let slow = changes[1] > SLOW * changes[0];
         if self.known && iteration < CHORDS && !slow && farthest.largest() <= 0.0 {
             return true;
         }
         kept_slope.copy_from_slice(followed);
         kept_coupling.packs_mut()[..n].copy_from_slice(coupling);
-        kept_normal.packs_mut()[..n].copy_from_slice(&m.normal_slope.packs()[..n]);
+        self.known = self.invert(n, m);
+        self.known
+    }
+
+    /// K⁻¹ for the slopes that are kept; `false` if K is not positive definite.
+    #[inline(always)]
+    fn invert(&mut self, n: usize, m: &FlatMatrices) -> bool {
+        let [slope, coupling, _, normal] = &mut self.slopes;
+        let (slope, coupling) = (&slope.packs()[..n], &coupling.packs()[..n]);
+        normal.packs_mut()[..n].copy_from_slice(&m.normal_slope.packs()[..n]);
         // Row by row the transpose: its inverse then stands column by column.
         let inverse = &mut self.inverse.packs_mut()[..self.nodes * n];
         let columns = m.by_tangential.packs().chunks_exact(2 * n);
@@ -138,10 +202,9 @@ impl Newton {
             }
             // The diagonal by a whole pack, see `gauss_jordan`.
             let (pack, lane) = (i / LANES, i % LANES);
-            to[pack] = gauss_jordan::UNIT[lane].mul_add(followed[pack], to[pack]);
+            to[pack] = gauss_jordan::UNIT[lane].mul_add(slope[pack], to[pack]);
         }
-        self.known = gauss_jordan::invert_rows(inverse, n, self.nodes, self.room.packs_mut());
-        self.known
+        gauss_jordan::invert_rows(inverse, n, self.nodes, self.room.packs_mut())
     }
 }
 
@@ -155,10 +218,10 @@ impl Stage {
         n: usize,
         m: &FlatMatrices,
         iteration: usize,
-        changes: [f64; 2],
+        changes: Changes,
     ) -> bool {
         let (newton, t) = (&mut self.newton, &self.traction);
-        if !newton.renew_inverse(n, m, t, iteration, changes[1] > SLOW * changes[0]) {
+        if !newton.renew_inverse(n, m, t, iteration, changes) {
             return false;
         }
         let nodes = newton.nodes;
@@ -207,9 +270,10 @@ impl Stage {
         matrices: &StageMatrices,
         motion: &Kinematics,
         iteration: usize,
+        changes: Changes,
     ) -> bool {
         let n = &mut self.newton;
-        let steepest_fall = n.steepest_fall(iteration);
+        let steepest_fall = n.steepest_fall(iteration, changes);
         n.forget();
         let (nodes, stride) = (n.nodes, self.placed.slip.len());
         let size = 2 * nodes;
@@ -258,16 +322,22 @@ impl Stage {
         true
     }
 
-    /// Largest change of a velocity that the direction asks for \[m/s\].
+    /// Largest change of a velocity that the direction asks for, as a share of the speed over which friction
+    /// changes: `smoothing_speed` \[m/s\] where a node sticks, more where it slips.
     #[inline(always)]
-    pub(super) fn change(&self, n: usize) -> f64 {
+    pub(super) fn change(&mut self, n: usize, smoothing_speed: f64) -> f64 {
+        let (share, smoothing) = (Pack::splat(SLIP_SHARE), Pack::splat(smoothing_speed));
+        let slip = &self.placed.slip.packs()[..n];
         let (x, z) = self.newton.direction.packs()[..2 * n].split_at(n);
         let inside = &self.newton.inside.packs()[..n];
         let mut most = Pack::default();
         for k in 0..n {
             // The padding is carried along with the face, which no direction accounts for.
-            most = most.max(inside[k] * x[k].abs().max(z[k].abs()));
+            let scale = slip[k].abs().mul_add(share, smoothing);
+            most = most.max(inside[k] * x[k].abs().max(z[k].abs()) / scale);
         }
+        // By way of memory: what ends there becomes vector instructions.
+        self.newton.room.packs_mut()[0] = most;
         most.largest()
     }
 

@@ -52,6 +52,8 @@ pub struct Integrator {
     contact: NormalSlopes,
     matrices: Vec<StageMatrices>,
     last_h: f64,
+    /// The state was set from outside since the last step.
+    fresh: bool,
     step: TrBdf2,
     statistics: Statistics,
     ledger: Option<Ledger>,
@@ -68,6 +70,7 @@ impl Integrator {
             contact,
             matrices: vec![StageMatrices::new(linear); LEVELS + 1],
             last_h: 0.0,
+            fresh: true,
             step: TrBdf2::new(linear),
             statistics: Statistics::default(),
             ledger: None,
@@ -98,14 +101,25 @@ impl Integrator {
         self.ledger = Some(Ledger { stored_at_start: stored, stored, ..Ledger::default() });
     }
 
-    /// Communication step \[s\] that the matrices are kept for.
-    pub fn last_h(&self) -> f64 {
-        self.last_h
+    /// The state is set from outside: nothing is carried over from the step before.
+    pub fn start_afresh(&mut self) {
+        self.fresh = true;
     }
 
-    /// Goes on from a restored state as if the last communication step had been `last_h` \[s\].
-    pub fn resume(&mut self, last_h: f64) {
-        self.last_h = last_h;
+    /// What is carried from step to step besides the state, as numbers in a fixed count.
+    pub fn save(&self, out: &mut Vec<f64>) {
+        out.extend([self.last_h, f64::from(u8::from(self.fresh))]);
+        self.step.save(out);
+    }
+
+    /// Reads what [`Self::save`] wrote; returns the rest, or `None`, and the next step then starts afresh, if
+    /// there is too little.
+    pub fn restore<'a>(&mut self, from: &'a [f64]) -> Option<&'a [f64]> {
+        self.fresh = true;
+        let ([last_h, fresh], rest) = from.split_first_chunk()?;
+        let rest = self.step.restore(rest)?;
+        (self.last_h, self.fresh) = (*last_h, *fresh == 1.0);
+        Some(rest)
     }
 
     /// Moves `state` over `h` \[s\]; `after_step(step size, end of step, state)` sees every accepted
@@ -125,7 +139,10 @@ impl Integrator {
         let start = state.time;
         let interval = if (h - self.last_h).abs() <= SAME_STEP * h { self.last_h } else { h };
         self.last_h = interval;
-        self.step.start_from(linear, state);
+        if self.fresh {
+            self.step.start_from(linear, state);
+            self.fresh = false;
+        }
         let mut at = 0;
         while at < TICKS {
             let wish = self.level(interval, at, state.step);

@@ -54,6 +54,8 @@ pub struct TrBdf2 {
     pub error: f64,
     /// See `error`.
     pub speed: f64,
+    /// Partial sums of both, squared.
+    sums: [Pack; 2],
     a: f64,
     /// Coefficient, stiffness factor and angle of the matrices used last.
     matrices_of: [f64; 3],
@@ -96,18 +98,40 @@ impl TrBdf2 {
             face_velocity: [0.0; 2],
             error: 0.0,
             speed: 0.0,
+            sums: [Pack::default(); 2],
             a: 0.0,
             matrices_of: [0.0; 3],
         }
     }
 
-    /// Contact displacements and velocities from the modal state, so that a restored state goes on
-    /// with the same bits.
+    /// Contact displacements and velocities from the modal state, where it was set from outside.
     pub fn start_from(&mut self, linear: &Linear, state: &State) {
         contact_motion(linear, &state.z, &mut self.u);
         contact_motion(linear, &state.w, &mut self.v);
         contact_motion(linear, &state.dw, &mut self.dv);
         self.stage.newton.forget();
+    }
+
+    /// What a step carries to the next one besides the state, as numbers: with them a restored block goes on
+    /// with the same bits.
+    pub fn save(&self, out: &mut Vec<f64>) {
+        for part in [&self.u, &self.v, &self.dv] {
+            out.extend_from_slice(part);
+        }
+        out.extend(self.matrices_of);
+        self.stage.newton.save(out);
+    }
+
+    /// Reads what [`Self::save`] wrote; returns the rest, or `None` if there is too little.
+    pub fn restore<'a>(&mut self, mut from: &'a [f64]) -> Option<&'a [f64]> {
+        for part in [&mut self.u, &mut self.v, &mut self.dv] {
+            let (own, rest) = from.split_at_checked(part.len())?;
+            part.copy_from_slice(own);
+            from = rest;
+        }
+        let (of, rest) = from.split_first_chunk()?;
+        self.matrices_of = *of;
+        self.stage.newton.restore(rest)
     }
 
     /// Steps from `from` \[s\] after the start of the segment by `h` \[s\].
@@ -136,7 +160,7 @@ impl TrBdf2 {
         match linear.stride / LANES {
             1 => both_stages::<1>(self, linear, face, state, matrices, &ends, h),
             2 => both_stages::<2>(self, linear, face, state, matrices, &ends, h),
-            //3 => both_stages::<3>(self, linear, face, state, matrices, &ends, h),
+            3 => both_stages::<3>(self, linear, face, state, matrices, &ends, h),
             _ => both_stages::<0>(self, linear, face, state, matrices, &ends, h),
         }
     }

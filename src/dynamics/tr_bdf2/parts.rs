@@ -140,15 +140,19 @@ impl TrBdf2 {
             stage.base_velocity[j] = state.base_velocity[j]
                 + by * (state.base_acceleration[j] + middle.base_acceleration[j]);
         }
-        // First guess: the change of the first stage goes on.
+        // First guess: the parabola through start and middle with the slope at the start goes on.
         let (u, v) = (&self.u.packs()[..2 * n], &self.v.packs()[..2 * n]);
         let v_mid = &middle.v.packs()[..2 * n];
         let u_star = &mut stage.u.packs_mut()[..2 * n];
         let guess = &mut stage.v.packs_mut()[..2 * n];
+        let dv = &self.dv.packs()[..2 * n];
         let on = Pack::splat((1.0 - GAMMA) / GAMMA);
+        let (bent, middle) = (Pack::splat((1.0 - GAMMA) / (GAMMA * GAMMA)), Pack::splat(-GAMMA * h));
         for k in 0..2 * n {
             u_star[k] = weight.mul_add(v[k] + v_mid[k], u[k]);
-            guess[k] = on.mul_add(v_mid[k] - v[k], guess[k]);
+            let change = v_mid[k] - v[k];
+            let line = on.mul_add(change, guess[k]);
+            guess[k] = bent.mul_add(middle.mul_add(dv[k], change), line);
         }
     }
 
@@ -221,6 +225,8 @@ impl TrBdf2 {
             error = of_w.mul_add(of_w, (omega2[m] * of_z).mul_add(of_z, error));
             speed = w_end[m].mul_add(w_end[m], speed);
         }
+        // By way of memory: what ends there becomes vector instructions.
+        self.sums = [error, speed];
         (self.error, self.speed) = (error.sum().sqrt(), speed.sum().sqrt());
     }
 }
