@@ -1,68 +1,46 @@
 //! Dense kernels on plain slices: no allocation, fixed order of summation, shapes that vectorise.
 
-use crate::pack::Pack;
+use crate::pack::{Pack, LANES};
 
-/// `out` = Σⱼ `columns`ⱼ xⱼ; `columns` holds column j at `j * out.len()` packs.
+/// `out` = Σⱼ `columns`ⱼ xⱼ; `columns` holds column j at `j * out.len()` packs, for every number of the packs `x`.
 #[inline(always)]
-pub fn multiply(out: &mut [Pack], columns: &[Pack], x: &[f64]) {
-    out.fill(Pack::default());
-    add_columns(out, columns, x, out.len(), 0);
-}
-
-/// `out` += Σⱼ `columns`ⱼ xⱼ, where `out` stands for the packs from number `start` on of columns that are
-/// `height` packs high.
-#[inline(always)]
-pub fn add_columns(out: &mut [Pack], columns: &[Pack], x: &[f64], height: usize, start: usize) {
+pub fn multiply(out: &mut [Pack], columns: &[Pack], x: &[Pack]) {
     let mut at = 0;
     while at < out.len() {
         // As many rows at a time as registers hold while all columns pass.
         at += match out.len() - at {
-            1 => add_rows::<1>(out, at, columns, x, height, start),
-            2 => add_rows::<2>(out, at, columns, x, height, start),
-            3 => add_rows::<3>(out, at, columns, x, height, start),
-            5 => add_rows::<3>(out, at, columns, x, height, start),
-            6 => add_rows::<3>(out, at, columns, x, height, start),
-            _ => add_rows::<4>(out, at, columns, x, height, start),
+            1 => rows::<1>(out, at, columns, x),
+            2 => rows::<2>(out, at, columns, x),
+            3 | 5 | 6 => rows::<3>(out, at, columns, x),
+            _ => rows::<4>(out, at, columns, x),
         };
     }
 }
 
-/// [`add_columns`] for the `N` packs of `out` from number `at` on; returns `N`.
+/// [`multiply`] for the `N` packs of `out` from number `at` on; returns `N`.
 ///
 /// Columns go to two sums in turn, so that a product need not wait for the one before.
 #[inline(always)]
-fn add_rows<const N: usize>(
-    out: &mut [Pack],
-    at: usize,
-    columns: &[Pack],
-    x: &[f64],
-    height: usize,
-    start: usize,
-) -> usize {
+fn rows<const N: usize>(out: &mut [Pack], at: usize, columns: &[Pack], x: &[Pack]) -> usize {
+    let height = out.len();
     let mut sums = [[Pack::default(); N]; 2];
-    let from = start + at;
     // Said once, so that it need not be checked in every column.
-    assert!(from + N <= height, "rows beyond the end of a column");
+    assert!(at + N <= height, "rows beyond the end of a column");
     let mut columns = columns.chunks_exact(height);
-    let pairs = x.as_chunks::<2>();
-    for pair in pairs.0 {
-        let [Some(even), Some(odd)] = [columns.next(), columns.next()] else { break };
-        let (even, odd) = (&even[from..from + N], &odd[from..from + N]);
-        let [x, y] = pair.map(Pack::splat);
-        for n in 0..N {
-            sums[0][n] = x.mul_add(even[n], sums[0][n]);
-            sums[1][n] = y.mul_add(odd[n], sums[1][n]);
-        }
-    }
-    if let ([last], Some(column)) = (pairs.1, columns.next()) {
-        let column = &column[from..from + N];
-        for n in 0..N {
-            sums[0][n] = Pack::splat(*last).mul_add(column[n], sums[0][n]);
+    for x in x {
+        for pair in 0..LANES / 2 {
+            let [Some(even), Some(odd)] = [columns.next(), columns.next()] else { break };
+            let (even, odd) = (&even[at..at + N], &odd[at..at + N]);
+            let (a, b) = (Pack::splat(x.0[2 * pair]), Pack::splat(x.0[2 * pair + 1]));
+            for n in 0..N {
+                sums[0][n] = a.mul_add(even[n], sums[0][n]);
+                sums[1][n] = b.mul_add(odd[n], sums[1][n]);
+            }
         }
     }
     let out = &mut out[at..at + N];
     for n in 0..N {
-        out[n] += sums[0][n] + sums[1][n];
+        out[n] = sums[0][n] + sums[1][n];
     }
     N
 }

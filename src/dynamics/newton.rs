@@ -22,7 +22,9 @@ const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
 /// Iterations before which the inverse of an earlier iteration may serve, while slopes are near.
 const CHORDS: usize = 4;
 /// Change of a slope, as a share of the node's resistance, over which an inverse still serves.
-const SAME_SLOPE: f64 = 0.1;
+const SAME_SLOPE: f64 = 0.4;
+/// Corrections for what slopes have changed since an inverse was made: each multiplies the error by that change.
+const CORRECTIONS: usize = 2;
 /// Changes are not taken to shrink more slowly than this.
 const WORST_CONTRACTION: f64 = 0.9;
 /// Ratio of a change to the one before, above which the inverse is made anew.
@@ -46,6 +48,8 @@ pub(super) struct Newton {
     normal: Aligned,
     /// B d_t \[N\] and Pᵀ d_t \[m/s\].
     of_tangential: Aligned,
+    /// The same of −δ_t.
+    of_step: Aligned,
     /// P φ \[N\] and A⁻¹ φ \[m/s\].
     of_normal: Aligned,
     /// What is left of the tangential balance, with the other sign \[N\].
@@ -53,10 +57,14 @@ pub(super) struct Newton {
     /// −∂(tangential)/∂(tangential speed) that the direction follows \[N s/m\].
     followed: Aligned,
     matrix: Aligned,
-    /// K⁻¹, column by column, for the slopes in `slopes`; see [`Self::renew_inverse`].
+    /// K⁻¹, column by column, for the slopes in `kept`; see [`Self::renew_inverse`].
     inverse: Aligned,
+    /// Slopes of the tangential force by the tangential and the normal speed \[N s/m\].
+    kept: [Aligned; 2],
     known: bool,
-    /// `slopes` were restored and K⁻¹ is still to be made of them.
+    /// It was made for the slopes as they stand.
+    new: bool,
+    /// `kept` was restored and K⁻¹ is still to be made of them.
     to_make: bool,
     /// Changes shrink by this factor per iteration, as far as is known \[-\].
     pub(super) contraction: f64,
@@ -81,12 +89,15 @@ impl Newton {
             difference: Aligned::zeros(2 * stride),
             normal: row(),
             of_tangential: Aligned::zeros(2 * stride),
+            of_step: Aligned::zeros(2 * stride),
             of_normal: Aligned::zeros(2 * stride),
             residual: row(),
             followed: row(),
             matrix: Aligned::zeros(4 * nodes * nodes),
-            inverse: Aligned::zeros(nodes * stride),
+            inverse: Aligned::zeros(stride * stride),
+            kept: [row(), row()],
             known: false,
+            new: false,
             to_make: false,
             contraction: WORST_CONTRACTION,
             gentle: false,
@@ -106,8 +117,8 @@ impl Newton {
     /// What a stage carries to the next one, as numbers.
     pub(super) fn save(&self, out: &mut Vec<f64>) {
         out.extend([f64::from(u8::from(self.known || self.to_make)), self.contraction]);
-        out.extend_from_slice(&self.slopes[0]);
-        out.extend_from_slice(&self.slopes[1]);
+        out.extend_from_slice(&self.kept[0]);
+        out.extend_from_slice(&self.kept[1]);
     }
 
     /// Reads what [`Self::save`] wrote; returns the rest, or `None` if there is too little.
@@ -117,8 +128,8 @@ impl Newton {
         let (slopes, rest) = rest.split_at_checked(2 * stride)?;
         self.forget();
         (self.to_make, self.contraction) = (*known == 1.0, contraction.clamp(0.0, WORST_CONTRACTION));
-        self.slopes[0].copy_from_slice(&slopes[..stride]);
-        self.slopes[1].copy_from_slice(&slopes[stride..]);
+        self.kept[0].copy_from_slice(&slopes[..stride]);
+        self.kept[1].copy_from_slice(&slopes[stride..]);
         Some(rest)
     }
 
@@ -166,7 +177,7 @@ impl Newton {
         let own = &m.resistance.packs()[..n];
         let (slip_slope, coupling) = (&t.slip_slope.packs()[..n], &t.coupling.packs()[..n]);
         let followed = &mut self.followed.packs_mut()[..n];
-        let [kept_slope, kept_coupling, ..] = &mut self.slopes;
+        let [kept_slope, kept_coupling] = &mut self.kept;
         let kept_slope = &mut kept_slope.packs_mut()[..n];
         let mut farthest = Pack::splat(f64::MIN);
         for k in 0..n {
@@ -177,21 +188,22 @@ impl Newton {
         }
         self.room.packs_mut()[0] = farthest;
         let slow = changes[1] > SLOW * changes[0];
+        self.new = false;
         if self.known && iteration < CHORDS && !slow && farthest.largest() <= 0.0 {
             return true;
         }
         kept_slope.copy_from_slice(followed);
         kept_coupling.packs_mut()[..n].copy_from_slice(coupling);
         self.known = self.invert(n, m);
+        self.new = true;
         self.known
     }
 
     /// K⁻¹ for the slopes that are kept; `false` if K is not positive definite.
     #[inline(always)]
     fn invert(&mut self, n: usize, m: &FlatMatrices) -> bool {
-        let [slope, coupling, _, normal] = &mut self.slopes;
+        let [slope, coupling] = &self.kept;
         let (slope, coupling) = (&slope.packs()[..n], &coupling.packs()[..n]);
-        normal.packs_mut()[..n].copy_from_slice(&m.normal_slope.packs()[..n]);
         // Row by row the transpose: its inverse then stands column by column.
         let inverse = &mut self.inverse.packs_mut()[..self.nodes * n];
         let columns = m.by_tangential.packs().chunks_exact(2 * n);
@@ -205,6 +217,33 @@ impl Newton {
             to[pack] = gauss_jordan::UNIT[lane].mul_add(slope[pack], to[pack]);
         }
         gauss_jordan::invert_rows(inverse, n, self.nodes, self.room.packs_mut())
+    }
+}
+
+impl Newton {
+    /// −δ_t from the `residual` into `direction`, and `of_step`; with K⁻¹ as it is kept, corrected for what slopes
+    /// have changed since: x ← K⁻¹ (r − (K' − K) x).
+    #[inline(always)]
+    fn solve(&mut self, n: usize, m: &FlatMatrices, t: &Traction) {
+        let (inverse, by_tangential) = (self.inverse.packs(), m.by_tangential.packs());
+        let [kept_slope, kept_coupling] = &self.kept;
+        let (kept_slope, kept_coupling) = (&kept_slope.packs()[..n], &kept_coupling.packs()[..n]);
+        let (slope, coupling) = (&self.followed.packs()[..n], &t.coupling.packs()[..n]);
+        let residual = &self.residual.packs()[..n];
+        let step = &mut self.direction.packs_mut()[..n];
+        let of_step = &mut self.of_step.packs_mut()[..2 * n];
+        let left = &mut self.room.packs_mut()[..n];
+        dense::multiply(step, inverse, residual);
+        dense::multiply(of_step, by_tangential, step);
+        let corrections = if self.new { 0 } else { CORRECTIONS };
+        for _ in 0..corrections {
+            for k in 0..n {
+                let by_slope = (slope[k] - kept_slope[k]).mul_add(-step[k], residual[k]);
+                left[k] = (coupling[k] - kept_coupling[k]).mul_add(of_step[n + k], by_slope);
+            }
+            dense::multiply(step, inverse, left);
+            dense::multiply(of_step, by_tangential, step);
+        }
     }
 }
 
@@ -224,42 +263,41 @@ impl Stage {
         if !newton.renew_inverse(n, m, t, iteration, changes) {
             return false;
         }
-        let nodes = newton.nodes;
         let (v, v_free) = (&self.v.packs()[..2 * n], &self.v_free.packs()[..2 * n]);
         let (tangential, f_n) = (&t.tangential.packs()[..n], &t.normal.packs()[..n]);
         let normal_slope = &m.normal_slope.packs()[..n];
         let difference = &mut newton.difference.packs_mut()[..2 * n];
         let normal = &mut newton.normal.packs_mut()[..n];
-        let force = &mut self.force.packs_mut()[..2 * n];
         for k in 0..n {
             difference[k] = v[k] - v_free[k];
             difference[n + k] = v[n + k] - v_free[n + k];
             normal[k] = normal_slope[k].mul_add(difference[n + k], f_n[k]);
-            force[k] = tangential[k];
-            force[n + k] = f_n[k];
         }
         // B d_t and Pᵀ d_t, P φ and A⁻¹ φ.
-        let (by_tangential, by_normal) = (m.by_tangential.packs(), m.by_normal.packs());
         let of_tangential = &mut newton.of_tangential.packs_mut()[..2 * n];
         let of_normal = &mut newton.of_normal.packs_mut()[..2 * n];
-        dense::multiply(of_tangential, by_tangential, &newton.difference[..nodes]);
-        dense::multiply(of_normal, by_normal, &newton.normal[..nodes]);
-        let d_n = &newton.difference.packs()[n..2 * n];
-        let coupling = &newton.slopes[1].packs()[..n];
+        dense::multiply(of_tangential, m.by_tangential.packs(), &difference[..n]);
+        dense::multiply(of_normal, m.by_normal.packs(), normal);
+        let coupling = &t.coupling.packs()[..n];
         let residual = &mut newton.residual.packs_mut()[..n];
-        let (direction_t, direction_n) = newton.direction.packs_mut()[..2 * n].split_at_mut(n);
+        let direction_n = &mut newton.direction.packs_mut()[n..2 * n];
         for k in 0..n {
             // The normal change if the tangential one were none.
-            direction_n[k] = of_normal[n + k] - d_n[k] - of_tangential[n + k];
+            direction_n[k] = of_normal[n + k] - difference[n + k] - of_tangential[n + k];
             let left = tangential[k] - of_tangential[k] - of_normal[k];
             residual[k] = coupling[k].mul_add(direction_n[k], -left);
         }
-        // −δ_t, since −Pᵀ δ_t is what is added to the normal change.
-        dense::multiply(direction_t, newton.inverse.packs(), &newton.residual[..nodes]);
-        let steps: &[f64] = &bytemuck::cast_slice(direction_t)[..nodes];
-        dense::add_columns(direction_n, by_tangential, steps, 2 * n, n);
-        for step in direction_t.iter_mut() {
-            *step = -*step;
+        newton.solve(n, m, t);
+        // What the linear equations make of the forces: f_t = B d_t + P φ at the end of the direction.
+        let (direction_t, direction_n) = newton.direction.packs_mut()[..2 * n].split_at_mut(n);
+        let (of_tangential, of_normal) = (&newton.of_tangential.packs()[..n], &newton.of_normal.packs()[..n]);
+        let of_step = &newton.of_step.packs()[..2 * n];
+        let force = &mut self.force.packs_mut()[..2 * n];
+        for k in 0..n {
+            direction_n[k] += of_step[n + k];
+            force[k] = of_tangential[k] + of_normal[k] - of_step[k];
+            force[n + k] = f_n[k] - normal_slope[k] * direction_n[k];
+            direction_t[k] = -direction_t[k];
         }
         true
     }
@@ -319,6 +357,13 @@ impl Stage {
         for (c, step) in n.compact.iter().enumerate() {
             n.direction[place(c)] = *step;
         }
+        // What the linear equations make of the forces.
+        let [xx, xz, zx, zz] = &n.slopes;
+        for i in 0..nodes {
+            let (dx, dz) = (n.compact[i], n.compact[nodes + i]);
+            self.force[i] -= xx[i] * dx + xz[i] * dz;
+            self.force[stride + i] -= zx[i] * dx + zz[i] * dz;
+        }
         true
     }
 
@@ -341,24 +386,19 @@ impl Stage {
         most.largest()
     }
 
-    /// Goes along the direction.
+    /// Goes along the direction; the forces are already those at its end.
     ///
     /// A tangential speed that would change its sign stops at zero: friction is concave on either
-    /// side, so from there the iteration cannot overshoot again. The last step is `whole`: its forces
-    /// follow along the tangent, so that they and the velocities satisfy the linear equations to
-    /// rounding.
+    /// side, so from there the iteration cannot overshoot again. The last step is `whole`: velocities and forces
+    /// then satisfy the linear equations to rounding.
     #[inline(always)]
     pub(super) fn take_direction(&mut self, n: usize, motion: &Kinematics, whole: bool) {
         let [sin, cos] = motion.sin_cos.map(Pack::splat);
         let newton = &mut self.newton;
         let (direction_x, direction_z) = newton.direction.packs()[..2 * n].split_at(n);
         let inside = &newton.inside.packs()[..n];
-        let [xx, xz, zx, zz] = &newton.slopes;
-        let (xx, xz) = (&xx.packs()[..n], &xz.packs()[..n]);
-        let (zx, zz) = (&zx.packs()[..n], &zz.packs()[..n]);
         let slip = &self.placed.slip.packs()[..n];
         let (vx, vz) = self.v.packs_mut()[..2 * n].split_at_mut(n);
-        let (fx, fz) = self.force.packs_mut()[..2 * n].split_at_mut(n);
         let zero = Pack::default();
         for k in 0..n {
             let (mut dx, dz) = (inside[k] * direction_x[k], inside[k] * direction_z[k]);
@@ -369,8 +409,6 @@ impl Stage {
                 let stopped = if cos == Pack::splat(1.0) { turned } else { turned / cos };
                 dx = (-(slip[k] * after)).if_above(zero, stopped, dx);
             }
-            fx[k] = fx[k] - xx[k].mul_add(dx, xz[k] * dz);
-            fz[k] = fz[k] - zx[k].mul_add(dx, zz[k] * dz);
             vx[k] += dx;
             vz[k] += dz;
         }

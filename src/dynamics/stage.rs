@@ -130,7 +130,7 @@ impl Stage {
         let driven = linear.prescribed_acceleration(motion.acceleration);
         self.modal_balance(linear, matrices, to_block(motion, driven));
         let v_free = &mut self.v_free.packs_mut()[..2 * n];
-        dense::multiply(v_free, linear.by_mode.packs(), &self.scratch);
+        dense::multiply(v_free, linear.by_mode.packs(), self.scratch.packs());
         let modes = self.scratch.packs().len();
         let mut h = [0.0; 2];
         // What the modes gain, in place of s·rhs, which is not needed any more.
@@ -332,7 +332,7 @@ impl Stage {
         }
         let y = times_2x2(&matrices.n_inverse, h);
         let pushed = &mut self.scratch.packs_mut()[..modes];
-        dense::multiply(pushed, linear.by_contact.packs(), &self.force);
+        dense::multiply(pushed, linear.by_contact.packs(), force);
         let (rhs, s) = (&self.rhs.packs()[..modes], &matrices.s.packs()[..modes]);
         let w_end = &mut self.w_end.packs_mut()[..modes];
         let a = Pack::splat(matrices.a);

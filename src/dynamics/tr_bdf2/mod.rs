@@ -154,8 +154,10 @@ impl TrBdf2 {
             self.stage.newton.forget();
         }
         self.a = matrices.a;
-        let ends = [from, from + GAMMA * h, from + h].map(|s| kinematics(segment, s));
-        self.inertia = [0, 1, 2].map(|k| inertia(linear, &ends[k]));
+        let at = |s| kinematics(segment, s);
+        let ends = [at(from), at(from + GAMMA * h), at(from + h)];
+        let [start, middle, end] = &ends;
+        self.inertia = [inertia(linear, start), inertia(linear, middle), inertia(linear, end)];
         // Compiled for the usual numbers of packs: loops over them are then none.
         match linear.stride / LANES {
             1 => both_stages::<1>(self, linear, face, state, matrices, &ends, h),
@@ -242,7 +244,7 @@ impl TrBdf2 {
     "x86_64+avx2+fma+bmi1+bmi2"
 ))]
 pub fn contact_motion(linear: &Linear, modal: &Aligned, out: &mut Aligned) {
-    dense::multiply(out.packs_mut(), linear.by_mode.packs(), modal);
+    dense::multiply(out.packs_mut(), linear.by_mode.packs(), modal.packs());
 }
 
 /// [`TrBdf2::go_on`] for the instruction set at hand.
