@@ -1,6 +1,6 @@
 //! The row of contact nodes: tractions and their derivatives from compression and sliding speed.
 
-use super::friction::{smoothed_sign, FrictionLaw, Law};
+use super::friction::{FrictionLaw, Law, Smoothing};
 use super::normal;
 use crate::effects::road_texture::Texture;
 use crate::pack::{Aligned, Pack, LANES};
@@ -23,6 +23,8 @@ pub struct Face {
     pub friction: Law,
     /// Contact stiffness.
     pub contact: Contact,
+    /// 1/depth of the contact stiffness \[1/m\].
+    pub per_depth: f64,
     /// Load-independent shear strength \[Pa\] where there is contact (adhesion).
     pub shear_strength: f64,
     /// Speed over which the shear strength is smoothed \[m/s\].
@@ -120,6 +122,7 @@ impl Face {
             smoothing_speed,
             friction,
             contact: contact.clone(),
+            per_depth: 1.0 / contact.depth,
             shear_strength: 0.0,
             shear_smoothing: smoothing_speed,
             pull_off: 0.0,
@@ -186,7 +189,7 @@ impl Face {
     /// Pressure \[Pa\] and its derivative by the speed away from the road \[Pa s/m\].
     #[inline(always)]
     fn pressure(&self, compression: Pack, a: f64, lift: Pack) -> (Pack, Pack) {
-        let (p, stiffness) = normal::pressures(&self.contact, compression);
+        let (p, stiffness) = normal::pressures(&self.contact, self.per_depth, compression);
         let by_lift = stiffness * Pack::splat(-a);
         if self.viscosity > 0.0 {
             return self.viscous_pressure(compression, a, lift, p, stiffness);
@@ -206,7 +209,7 @@ impl Face {
     #[inline(always)]
     fn viscous_pressure(&self, u: Pack, a: f64, lift: Pack, p: Pack, k: Pack) -> (Pack, Pack) {
         let (zero, viscosity) = (Pack::splat(0.0), Pack::splat(self.viscosity));
-        let per_depth = Pack::splat(1.0 / self.contact.depth);
+        let per_depth = Pack::splat(self.per_depth);
         let left = (-(u.max(zero) * per_depth)).exp();
         let damper = viscosity * (Pack::splat(1.0) - left);
         let sum = p - damper * lift;
@@ -236,7 +239,7 @@ impl Face {
         let free = (-(p * per_pressure)).exp();
         let share = Pack::splat(1.0) - free;
         let share_by_lift = free * per_pressure * p_by_lift;
-        let (sign, slope) = smoothed_sign(slip, self.shear_smoothing);
+        let (sign, slope) = Smoothing::over(self.shear_smoothing).sign(slip);
         let (shear, pull) = (Pack::splat(self.shear_strength), Pack::splat(self.pull_off));
         t.tangential = t.tangential - shear * share * sign;
         t.slip_slope += shear * share * slope;

@@ -34,7 +34,7 @@ pub trait FrictionLaw {
     /// resolved below the smoothing speed.
     fn level(&self, p: f64, v: f64, smoothing_speed: f64) -> f64 {
         let v = v.abs().max(smoothing_speed);
-        let (sign, _) = smoothed_sign(Pack::splat(v), smoothing_speed);
+        let (sign, _) = Smoothing::over(smoothing_speed).sign(Pack::splat(v));
         self.at(p, v)[0] / sign.0[0]
     }
 }
@@ -68,7 +68,7 @@ impl Law {
             (FrictionForm::TwoExponentials, _) => Self::TwoExponentials(TwoExponentials {
                 fast: Exponential { common, exponent: params.decay_exponent },
                 slow_share: params.slow_share,
-                slow_speed: params.slow_speed,
+                per_slow_speed: 1.0 / params.slow_speed,
                 slow_exponent: params.slow_exponent,
             }),
             (FrictionForm::Table, Some(table)) => {
@@ -76,7 +76,9 @@ impl Law {
                 table.smoothing_speed = params.smoothing_speed;
                 Self::Table(Box::new(table))
             }
-            _ => Self::Exponential(Exponential { common, exponent: params.decay_exponent }),
+            (FrictionForm::Exponential, _) | (FrictionForm::Table, None) => {
+                Self::Exponential(Exponential { common, exponent: params.decay_exponent })
+            }
         }
     }
 }
@@ -94,15 +96,40 @@ impl FrictionLaw for Law {
     }
 }
 
+/// Sign of a speed, smoothed about zero: (2/π) atan(v/v_ε). Quotients are made once: laws are evaluated millions of
+/// times a second.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Smoothing {
+    /// 1/v_ε \[s/m\].
+    per_speed: f64,
+    /// Slope at zero \[s/m\].
+    steepest: f64,
+}
+
+impl Smoothing {
+    /// Over a speed v_ε \[m/s\].
+    pub fn over(speed: f64) -> Self {
+        Self { per_speed: 1.0 / speed, steepest: FRAC_2_PI / speed }
+    }
+
+    /// Smoothed sign \[-\] and its derivative \[s/m\].
+    #[inline(always)]
+    pub fn sign(self, v: Pack) -> (Pack, Pack) {
+        let ratio = v * Pack::splat(self.per_speed);
+        let slope = Pack::splat(self.steepest) / ratio.mul_add(ratio, Pack::splat(1.0));
+        (ratio.atan() * Pack::splat(FRAC_2_PI), slope)
+    }
+}
+
 /// What the closed forms share: μ = (2/π) atan(v/v_ε) · (max(p, 1 kPa)/p₀)ⁿ · \[μ_∞ + Δμ·fall(|v|)\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Common {
     mu_inf: f64,
     mu_drop: f64,
-    decay_speed: f64,
-    smoothing_speed: f64,
+    per_decay_speed: f64,
+    smoothing: Smoothing,
     pressure_exponent: f64,
-    reference_pressure: f64,
+    per_reference_pressure: f64,
 }
 
 impl Common {
@@ -110,10 +137,10 @@ impl Common {
         Self {
             mu_inf: p.mu_inf,
             mu_drop: p.mu_drop,
-            decay_speed: p.decay_speed,
-            smoothing_speed: p.smoothing_speed,
+            per_decay_speed: 1.0 / p.decay_speed,
+            smoothing: Smoothing::over(p.smoothing_speed),
             pressure_exponent: p.pressure_exponent,
-            reference_pressure: p.reference_pressure,
+            per_reference_pressure: 1.0 / p.reference_pressure,
         }
     }
 
@@ -121,7 +148,7 @@ impl Common {
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack, fall: Pack, slope: Pack) -> Mu {
         let splat = Pack::splat;
-        let (sign, sign_slope) = smoothed_sign(v, self.smoothing_speed);
+        let (sign, sign_slope) = self.smoothing.sign(v);
         let level = fall.mul_add(splat(self.mu_drop), splat(self.mu_inf));
         let falling = sign.abs() * splat(self.mu_drop) * slope;
         let (value, by_speed) = (sign * level, sign_slope.mul_add(level, falling));
@@ -129,20 +156,12 @@ impl Common {
             return Mu { value, by_speed, by_log_pressure: splat(0.0) };
         }
         let least = splat(MIN_PRESSURE);
-        let ratio = p.max(least) * splat(1.0 / self.reference_pressure);
+        let ratio = p.max(least) * splat(self.per_reference_pressure);
         let by_p = ratio.powf(self.pressure_exponent);
         let value = by_p * value;
         let by_log_pressure = p.if_above(least, value * splat(self.pressure_exponent), splat(0.0));
         Mu { value, by_speed: by_p * by_speed, by_log_pressure }
     }
-}
-
-/// Smoothed sign (2/π) atan(v/v_ε) and its derivative \[s/m\].
-#[inline(always)]
-pub fn smoothed_sign(v: Pack, smoothing_speed: f64) -> (Pack, Pack) {
-    let ratio = v * Pack::splat(1.0 / smoothing_speed);
-    let slope = Pack::splat(FRAC_2_PI / smoothing_speed);
-    (ratio.atan() * Pack::splat(FRAC_2_PI), slope / ratio.mul_add(ratio, Pack::splat(1.0)))
 }
 
 /// Stretched exponential: fall = exp(−(|v|/v_d)^γ).
@@ -155,18 +174,18 @@ pub struct Exponential {
 impl FrictionLaw for Exponential {
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack) -> Mu {
-        let (fall, slope) = stretched(v, self.common.decay_speed, self.exponent);
+        let (fall, slope) = stretched(v, self.common.per_decay_speed, self.exponent);
         self.common.mu(p, v, fall, slope)
     }
 }
 
-/// exp(−(|v|/`speed`)^`exponent`) and its derivative by |v| \[s/m\].
+/// exp(−(|v|·`per_speed`)^`exponent`) and its derivative by |v| \[s/m\].
 #[inline(always)]
-fn stretched(v: Pack, speed: f64, exponent: f64) -> (Pack, Pack) {
-    let ratio = v.abs() * Pack::splat(1.0 / speed);
+fn stretched(v: Pack, per_speed: f64, exponent: f64) -> (Pack, Pack) {
+    let ratio = v.abs() * Pack::splat(per_speed);
     if exponent == 1.0 {
         let fall = (-ratio).exp();
-        return (fall, fall * Pack::splat(-1.0 / speed));
+        return (fall, fall * Pack::splat(-per_speed));
     }
     let power = power(ratio, exponent);
     let fall = (-power).exp();
@@ -186,7 +205,7 @@ fn by_speed(v: Pack, by_log_speed: Pack) -> Pack {
 pub struct TwoExponentials {
     fast: Exponential,
     slow_share: f64,
-    slow_speed: f64,
+    per_slow_speed: f64,
     slow_exponent: f64,
 }
 
@@ -194,8 +213,8 @@ impl FrictionLaw for TwoExponentials {
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack) -> Mu {
         let (share, rest) = (Pack::splat(self.slow_share), Pack::splat(1.0 - self.slow_share));
-        let (fast, fast_slope) = stretched(v, self.fast.common.decay_speed, self.fast.exponent);
-        let (slow, slow_slope) = stretched(v, self.slow_speed, self.slow_exponent);
+        let (fast, fast_slope) = stretched(v, self.fast.common.per_decay_speed, self.fast.exponent);
+        let (slow, slow_slope) = stretched(v, self.per_slow_speed, self.slow_exponent);
         let fall = rest.mul_add(fast, share * slow);
         self.fast.common.mu(p, v, fall, rest.mul_add(fast_slope, share * slow_slope))
     }
@@ -218,7 +237,7 @@ pub struct Rational {
 impl FrictionLaw for Rational {
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack) -> Mu {
-        let ratio = v.abs() * Pack::splat(1.0 / self.common.decay_speed);
+        let ratio = v.abs() * Pack::splat(self.common.per_decay_speed);
         let power = power(ratio, self.exponent);
         let fall = Pack::splat(1.0) / (power + Pack::splat(1.0));
         let slope = Pack::splat(-self.exponent) * power * fall * fall;
@@ -236,7 +255,7 @@ pub struct LogBell {
 impl FrictionLaw for LogBell {
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack) -> Mu {
-        let ratio = v.abs().max(Pack::splat(1e-12)) * Pack::splat(1.0 / self.common.decay_speed);
+        let ratio = v.abs().max(Pack::splat(1e-12)) * Pack::splat(self.common.per_decay_speed);
         let decades = ratio.ln() * Pack::splat(1.0 / LN_10);
         let scaled = decades * Pack::splat(self.steepness);
         let fall = (-(scaled * scaled)).exp();

@@ -1,6 +1,6 @@
 //! A friction characteristic measured over pressure and speed, interpolated.
 
-use super::friction::{smoothed_sign, FrictionLaw, Mu};
+use super::friction::{FrictionLaw, Mu, Smoothing};
 use crate::error::{Fault, Problem};
 use crate::pack::{Pack, LANES};
 
@@ -115,7 +115,7 @@ fn locate(axis: &[f64], x: f64) -> (usize, f64, f64) {
 impl FrictionLaw for Table {
     #[inline(always)]
     fn mu(&self, p: Pack, v: Pack) -> Mu {
-        let (sign, slope) = smoothed_sign(v, self.smoothing_speed);
+        let (sign, slope) = Smoothing::over(self.smoothing_speed).sign(v);
         let tiny = Pack::splat(1e-12);
         let log_v = v.abs().max(tiny).ln();
         let mut level = [[0.0; LANES]; 3];

@@ -4,25 +4,26 @@ use crate::pack::Pack;
 use crate::params::{Contact, ContactForm};
 
 /// Pressure p \[Pa\] and stiffness dp/du \[Pa/m\] at a compression u \[m\]; both 0 for u ≤ 0 (lift-off).
+/// `per_depth` is 1/u₀ \[1/m\], which is not divided anew millions of times a second.
 ///
 /// Exponential: p = p_r (exp(u/u₀) − 1), after the logarithmic law of tyre-road contact (Wang et
 /// al., Tribol. Lett. 56, 2014). Power: p = p_r (u/u₀)^m.
 #[inline(always)]
-pub fn pressures(law: &Contact, compression: Pack) -> (Pack, Pack) {
+pub fn pressures(law: &Contact, per_depth: f64, compression: Pack) -> (Pack, Pack) {
     let splat = Pack::splat;
     let (p_r, zero) = (law.reference_pressure, splat(0.0));
-    let ratio = compression * splat(1.0 / law.depth);
+    let ratio = compression * splat(per_depth);
     let (p, stiffness) = match law.form {
         ContactForm::Exponential => {
             // Beyond 40 e-folds the tangent continues: no solver iterate may overflow.
             let bounded = ratio.min(splat(40.0));
             let grown = bounded.exp();
             let p = grown - splat(1.0) + grown * (ratio - bounded);
-            (p * splat(p_r), grown * splat(p_r / law.depth))
+            (p * splat(p_r), grown * splat(p_r * per_depth))
         }
         ContactForm::Power => {
             let lower = ratio.max(splat(1e-200)).powf(law.exponent - 1.0);
-            (ratio * lower * splat(p_r), lower * splat(p_r * law.exponent / law.depth))
+            (ratio * lower * splat(p_r), lower * splat(p_r * law.exponent * per_depth))
         }
     };
     (compression.if_above(zero, p, zero), compression.if_above(zero, stiffness, zero))
@@ -30,7 +31,7 @@ pub fn pressures(law: &Contact, compression: Pack) -> (Pack, Pack) {
 
 /// [`pressures`] at one compression.
 pub fn pressure(law: &Contact, compression: f64) -> (f64, f64) {
-    let (p, stiffness) = pressures(law, Pack::splat(compression));
+    let (p, stiffness) = pressures(law, 1.0 / law.depth, Pack::splat(compression));
     (p.0[0], stiffness.0[0])
 }
 

@@ -22,7 +22,7 @@ const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
 /// Iterations before which the inverse of an earlier iteration may serve, while slopes are near.
 const CHORDS: usize = 4;
 /// Change of a slope, as a share of the node's resistance, over which an inverse still serves.
-const SAME_SLOPE: f64 = 0.4;
+const SAME_SLOPE: f64 = 0.6;
 /// Corrections for what slopes have changed since an inverse was made: each multiplies the error by that change.
 const CORRECTIONS: usize = 2;
 /// Changes are not taken to shrink more slowly than this.
