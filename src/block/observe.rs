@@ -5,7 +5,7 @@ use super::TreadBlock;
 use crate::contact::{face::padded, Placed, Traction};
 use crate::dynamics::tr_bdf2::contact_motion;
 use crate::dynamics::{Kinematics, Linear, State};
-use crate::pack::Aligned;
+use crate::pack::{Aligned, Pack, LANES};
 
 /// Quadratic interpolation from contact nodes to equidistant stations, with buffers.
 #[derive(Clone, Debug)]
@@ -16,6 +16,8 @@ pub(super) struct Stations {
     u: Aligned,
     v: Aligned,
     placed: Placed,
+    /// Where the nodes stand along the road from the middle of the clamped face \[m\].
+    along: Aligned,
 }
 
 impl Stations {
@@ -37,13 +39,15 @@ impl Stations {
             u: Aligned::zeros(2 * stride),
             v: Aligned::zeros(2 * stride),
             placed: Placed::new(nodes),
+            along: Aligned::zeros(stride),
         }
     }
 
     fn at(&self, values: &[f64]) -> [f64; STATIONS] {
         std::array::from_fn(|k| {
             let (node, weights) = self.places[k];
-            weights.iter().zip(&values[node..]).map(|(weight, value)| weight * value).sum()
+            let three = &values[node..node + 3];
+            weights[0] * three[0] + weights[1] * three[1] + weights[2] * three[2]
         })
     }
 }
@@ -113,20 +117,38 @@ impl TreadBlock {
     fn contact_now(&mut self, motion: &Kinematics) {
         let (linear, st) = (&self.linear, &mut self.stations);
         let stride = linear.stride;
-        contact_motion(linear, &self.state.z, &mut st.u);
-        contact_motion(linear, &self.state.w, &mut st.v);
-        let [sin, cos] = motion.sin_cos;
-        for i in 0..stride {
-            let (x, z) = (linear.node_x[i] + st.u[i], linear.node_z + st.u[stride + i]);
-            let (vx, vz) = (st.v[i], st.v[stride + i]);
-            let (along, up) = (cos * x - sin * z, sin * x + cos * z);
-            st.placed.compression[i] =
-                -(motion.position[1] + up) - self.face.profile[i] - self.state.worn[i];
-            if let Some(road) = &self.face.road {
-                st.placed.compression[i] += road.height(motion.position[0] + along);
+        if let Some([u, v]) = self.integrator.contact_motion() {
+            st.u.copy_from_slice(u);
+            st.v.copy_from_slice(v);
+        } else {
+            contact_motion(linear, &self.state.z, &mut st.u);
+            contact_motion(linear, &self.state.w, &mut st.v);
+        }
+        let splat = Pack::splat;
+        let [sin, cos] = motion.sin_cos.map(splat);
+        let n = stride / LANES;
+        let (ux, uz) = st.u.packs()[..2 * n].split_at(n);
+        let (vx, vz) = st.v.packs()[..2 * n].split_at(n);
+        let (node_x, node_z) = (&linear.node_x.packs()[..n], splat(linear.node_z));
+        let (profile, worn) = (&self.face.profile.packs()[..n], &self.state.worn.packs()[..n]);
+        let compression = &mut st.placed.compression.packs_mut()[..n];
+        let slip = &mut st.placed.slip.packs_mut()[..n];
+        let lift = &mut st.placed.lift.packs_mut()[..n];
+        let along = &mut st.along.packs_mut()[..n];
+        let [height, omega] = [motion.position[1], motion.omega].map(splat);
+        let [speed, rise] = motion.velocity.map(splat);
+        for k in 0..n {
+            let (x, z) = (node_x[k] + ux[k], node_z + uz[k]);
+            let up = sin * x + cos * z;
+            along[k] = cos * x - sin * z;
+            compression[k] = -(height + up) - profile[k] - worn[k];
+            slip[k] = speed + cos * vx[k] - sin * vz[k] - omega * up;
+            lift[k] = rise + sin * vx[k] + cos * vz[k] + omega * along[k];
+        }
+        if let Some(road) = &self.face.road {
+            for (compression, along) in st.placed.compression.iter_mut().zip(&st.along) {
+                *compression += road.height(motion.position[0] + along);
             }
-            st.placed.slip[i] = motion.velocity[0] + cos * vx - sin * vz - motion.omega * up;
-            st.placed.lift[i] = motion.velocity[1] + sin * vx + cos * vz + motion.omega * along;
         }
         let factor = &self.state.friction_factor;
         self.face.evaluate(0.0, &st.placed, factor, &mut st.traction);
@@ -143,14 +165,20 @@ impl TreadBlock {
         }
         let base = [cos * road[0] + sin * road[1], -sin * road[0] + cos * road[1]];
         let prescribed = [cos * driven[0] + sin * driven[1], -sin * driven[0] + cos * driven[1]];
-        let mut rate = [linear.block_mass * base[0], linear.block_mass * base[1]];
-        let mut turning = linear.block_mass * 0.5 * linear.node_z * base[0];
-        for m in 0..linear.modes() {
-            let acceleration = state.dw[m] - linear.coupling_along(m, prescribed);
-            rate[0] += linear.coupling[0][m] * acceleration;
-            rate[1] += linear.coupling[1][m] * acceleration;
-            turning += linear.coupling[2][m] * acceleration;
+        let modes = state.dw.packs().len();
+        let [gx, gz, gy] = &linear.coupling;
+        let (gx, gz, gy) = (&gx.packs()[..modes], &gz.packs()[..modes], &gy.packs()[..modes]);
+        let [x, z] = prescribed.map(Pack::splat);
+        let mut sums = [Pack::default(); 3];
+        for (m, dw) in state.dw.packs().iter().enumerate() {
+            let acceleration = *dw - (gx[m] * x + gz[m] * z);
+            sums[0] += gx[m] * acceleration;
+            sums[1] += gz[m] * acceleration;
+            sums[2] += gy[m] * acceleration;
         }
+        let [x, z, y] = sums.map(Pack::sum);
+        let rate = [linear.block_mass * base[0] + x, linear.block_mass * base[1] + z];
+        let turning = linear.block_mass * 0.5 * linear.node_z * base[0] + y;
         let out = &mut self.outputs;
         out.force = [
             out.contact_force[0] - (cos * rate[0] - sin * rate[1]),

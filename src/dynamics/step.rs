@@ -9,6 +9,7 @@ use super::tr_bdf2::{TrBdf2, D, W};
 use crate::contact::{Face, NormalSlopes};
 use crate::drive::Segment;
 use crate::error::Fault;
+use crate::pack::Aligned;
 
 /// A communication step is divided into at most 2^LEVELS internal steps.
 const LEVELS: usize = 12;
@@ -106,6 +107,12 @@ impl Integrator {
         self.fresh = true;
     }
 
+    /// Displacements \[m\] and velocities \[m/s\] of the contact nodes relative to the clamped face, block frame,
+    /// as the last step left them; `None` if the state was set from outside since.
+    pub fn contact_motion(&self) -> Option<[&Aligned; 2]> {
+        (!self.fresh).then(|| self.step.contact_motion())
+    }
+
     /// What is carried from step to step besides the state, as numbers in a fixed count.
     pub fn save(&self, out: &mut Vec<f64>) {
         out.extend([self.last_h, f64::from(u8::from(self.fresh))]);
@@ -139,10 +146,8 @@ impl Integrator {
         let start = state.time;
         let interval = if (h - self.last_h).abs() <= SAME_STEP * h { self.last_h } else { h };
         self.last_h = interval;
-        if self.fresh {
-            self.step.start_from(linear, state);
-            self.fresh = false;
-        }
+        self.step.start_from(linear, state, self.fresh);
+        self.fresh = false;
         let mut at = 0;
         while at < TICKS {
             let wish = self.level(interval, at, state.step);

@@ -104,12 +104,21 @@ impl TrBdf2 {
         }
     }
 
-    /// Contact displacements and velocities from the modal state, where it was set from outside.
-    pub fn start_from(&mut self, linear: &Linear, state: &State) {
+    /// Contact displacements from the modal state, lest rounding adds up over millions of steps; velocities as
+    /// well where the state is `fresh` from outside.
+    pub fn start_from(&mut self, linear: &Linear, state: &State, fresh: bool) {
         contact_motion(linear, &state.z, &mut self.u);
+        if !fresh {
+            return;
+        }
         contact_motion(linear, &state.w, &mut self.v);
         contact_motion(linear, &state.dw, &mut self.dv);
         self.stage.newton.forget();
+    }
+
+    /// Displacements \[m\] and velocities \[m/s\] of the contact nodes relative to the clamped face, block frame.
+    pub fn contact_motion(&self) -> [&Aligned; 2] {
+        [&self.u, &self.v]
     }
 
     /// What a step carries to the next one besides the state, as numbers: with them a restored block goes on
