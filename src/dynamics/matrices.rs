@@ -60,13 +60,7 @@ impl StageMatrices {
             s: Aligned::zeros(modes),
             a_omega2: Aligned::zeros(modes),
             inverse_delassus: Aligned::zeros(4 * linear.nodes * linear.nodes),
-            flat: FlatMatrices {
-                normal_slope: Aligned::zeros(stride),
-                resistance: Aligned::zeros(stride),
-                by_tangential: Aligned::zeros(2 * stride * stride),
-                by_normal: Aligned::zeros(2 * stride * stride),
-                room: [(); 2].map(|()| Aligned::zeros(linear.nodes * linear.nodes)),
-            },
+            flat: FlatMatrices::new(linear.nodes, stride),
             base_coupling: Aligned::zeros(2 * modes),
             q: Aligned::zeros(4 * stride),
             n_inverse: [0.0; 4],
@@ -166,6 +160,17 @@ impl StageMatrices {
 }
 
 impl FlatMatrices {
+    /// Room for `nodes` nodes, `stride` with the padding.
+    pub(super) fn new(nodes: usize, stride: usize) -> Self {
+        Self {
+            normal_slope: Aligned::zeros(stride),
+            resistance: Aligned::zeros(stride),
+            by_tangential: Aligned::zeros(2 * stride * stride),
+            by_normal: Aligned::zeros(2 * stride * stride),
+            room: [(); 2].map(|()| Aligned::zeros(nodes * nodes)),
+        }
+    }
+
     fn split(
         &mut self,
         s: &[f64],

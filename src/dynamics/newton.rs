@@ -5,9 +5,10 @@ use super::kinematics::Kinematics;
 use super::linear::Linear;
 use super::matrices::{FlatMatrices, StageMatrices};
 use super::stage::Stage;
-use super::{dense, gauss_jordan};
+use super::dense;
+use super::kept_inverse::KeptInverse;
 use crate::contact::Traction;
-use crate::pack::{larger, Aligned, Pack, LANES};
+use crate::pack::{larger, Aligned, Pack};
 
 /// Largest fall of friction with speed that a direction follows, as a share of the block's own
 /// resistance: far from the solution the tangent of a steeper fall overshoots, near it only the
@@ -21,10 +22,6 @@ const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
 
 /// Iterations before which the inverse of an earlier iteration may serve, while slopes are near.
 const CHORDS: usize = 4;
-/// Change of a slope, as a share of the node's resistance, over which an inverse still serves.
-const SAME_SLOPE: f64 = 0.6;
-/// Corrections for what slopes have changed since an inverse was made: each multiplies the error by that change.
-const CORRECTIONS: usize = 2;
 /// Changes are not taken to shrink more slowly than this.
 const WORST_CONTRACTION: f64 = 0.9;
 /// Ratio of a change to the one before, above which the inverse is made anew.
@@ -57,15 +54,7 @@ pub(super) struct Newton {
     /// −∂(tangential)/∂(tangential speed) that the direction follows \[N s/m\].
     followed: Aligned,
     matrix: Aligned,
-    /// K⁻¹, column by column, for the slopes in `kept`; see [`Self::renew_inverse`].
-    inverse: Aligned,
-    /// Slopes of the tangential force by the tangential and the normal speed \[N s/m\].
-    kept: [Aligned; 2],
-    known: bool,
-    /// It was made for the slopes as they stand.
-    new: bool,
-    /// `kept` was restored and K⁻¹ is still to be made of them.
-    to_make: bool,
+    inverse: KeptInverse,
     /// Changes shrink by this factor per iteration, as far as is known \[-\].
     pub(super) contraction: f64,
     /// No tangent is steeper than the first of [`STEEPEST_FALL`], in all iterations.
@@ -73,8 +62,8 @@ pub(super) struct Newton {
     compact: Aligned,
     /// −∂f/∂v per node in the block's frame: xx, xz, zx, zz \[N s/m\].
     slopes: [Aligned; 4],
-    /// Two rows for the inverse.
-    room: Aligned,
+    /// The largest of each eight, where it is looked for.
+    most: Pack,
     /// 1 per node, 0 in the padding.
     inside: Aligned,
     nodes: usize,
@@ -94,16 +83,12 @@ impl Newton {
             residual: row(),
             followed: row(),
             matrix: Aligned::zeros(4 * nodes * nodes),
-            inverse: Aligned::zeros(stride * stride),
-            kept: [row(), row()],
-            known: false,
-            new: false,
-            to_make: false,
+            inverse: KeptInverse::new(nodes, stride),
             contraction: WORST_CONTRACTION,
             gentle: false,
             compact: Aligned::zeros(2 * nodes),
             slopes: [row(), row(), row(), row()],
-            room: Aligned::zeros(2 * stride),
+            most: Pack::default(),
             inside: Aligned::padded(&vec![1.0; nodes], stride, 0.0),
             nodes,
         }
@@ -111,26 +96,20 @@ impl Newton {
 
     /// The inverse is made anew before it is used again.
     pub(super) fn forget(&mut self) {
-        (self.known, self.to_make) = (false, false);
+        self.inverse.forget();
     }
 
     /// What a stage carries to the next one, as numbers.
     pub(super) fn save(&self, out: &mut Vec<f64>) {
-        out.extend([f64::from(u8::from(self.known || self.to_make)), self.contraction]);
-        out.extend_from_slice(&self.kept[0]);
-        out.extend_from_slice(&self.kept[1]);
+        out.push(self.contraction);
+        self.inverse.save(out);
     }
 
     /// Reads what [`Self::save`] wrote; returns the rest, or `None` if there is too little.
     pub(super) fn restore<'a>(&mut self, from: &'a [f64]) -> Option<&'a [f64]> {
-        let stride = self.followed.len();
-        let ([known, contraction], rest) = from.split_first_chunk()?;
-        let (slopes, rest) = rest.split_at_checked(2 * stride)?;
-        self.forget();
-        (self.to_make, self.contraction) = (*known == 1.0, contraction.clamp(0.0, WORST_CONTRACTION));
-        self.kept[0].copy_from_slice(&slopes[..stride]);
-        self.kept[1].copy_from_slice(&slopes[stride..]);
-        Some(rest)
+        let (contraction, rest) = from.split_first()?;
+        self.contraction = contraction.clamp(0.0, WORST_CONTRACTION);
+        self.inverse.restore(rest)
     }
 
     /// Estimated error after a change, from how changes shrink (Hairer and Wanner, Solving ODEs II, IV.8); the
@@ -150,18 +129,17 @@ impl Newton {
         self.forget();
     }
 
-    /// Largest fall that the direction of an iteration follows, as a share of the block's resistance.
+    /// Is the solution near, so that the direction may follow the tangent of a falling characteristic?
     #[inline(always)]
-    fn steepest_fall(&self, iteration: usize, [before, last]: Changes) -> f64 {
+    fn near(&self, iteration: usize, [before, last]: Changes) -> bool {
         let falling = iteration == 1 || (last < NEAR_CHANGE && last < before);
-        let near = NEAR.contains(&iteration) || (falling && iteration < *NEAR.start());
-        STEEPEST_FALL[usize::from(near && !self.gentle)]
+        !self.gentle && (NEAR.contains(&iteration) || (falling && iteration < *NEAR.start()))
     }
 
-    /// Keeps K⁻¹ = (B + g − c Pᵀ)⁻¹ for the slopes as they stand, unless it holds for slopes that
-    /// are near enough; `false` if K is not positive definite.
+    /// Slopes that the direction follows and an inverse that serves for them; `false` if the matrix is not
+    /// positive definite.
     #[inline(always)]
-    fn renew_inverse(
+    fn prepare(
         &mut self,
         n: usize,
         m: &FlatMatrices,
@@ -169,80 +147,27 @@ impl Newton {
         iteration: usize,
         changes: Changes,
     ) -> bool {
-        if self.to_make {
-            self.forget();
-            self.known = self.invert(n, m);
-        }
-        let steepest = Pack::splat(-self.steepest_fall(iteration, changes));
-        let own = &m.resistance.packs()[..n];
-        let (slip_slope, coupling) = (&t.slip_slope.packs()[..n], &t.coupling.packs()[..n]);
-        let followed = &mut self.followed.packs_mut()[..n];
-        let [kept_slope, kept_coupling] = &mut self.kept;
-        let kept_slope = &mut kept_slope.packs_mut()[..n];
-        let mut farthest = Pack::splat(f64::MIN);
-        for k in 0..n {
-            // A falling characteristic is not followed: its tangent would overshoot.
-            followed[k] = slip_slope[k].max(steepest * own[k]);
-            let allowed = Pack::splat(SAME_SLOPE) * (own[k] + followed[k]);
-            farthest = farthest.max((followed[k] - kept_slope[k]).abs() - allowed);
-        }
-        self.room.packs_mut()[0] = farthest;
-        let slow = changes[1] > SLOW * changes[0];
-        self.new = false;
-        if self.known && iteration < CHORDS && !slow && farthest.largest() <= 0.0 {
+        let anew = iteration >= CHORDS || changes[1] > SLOW * changes[0];
+        let near = self.near(iteration, changes);
+        self.follow(n, m, t, STEEPEST_FALL[usize::from(near)]);
+        let coupling = t.coupling.packs();
+        if self.inverse.fit(n, m, self.followed.packs(), coupling, anew) {
             return true;
         }
-        kept_slope.copy_from_slice(followed);
-        kept_coupling.packs_mut()[..n].copy_from_slice(coupling);
-        self.known = self.invert(n, m);
-        self.new = true;
-        self.known
+        // Many nodes that fall together resist less than each alone.
+        self.follow(n, m, t, STEEPEST_FALL[0]);
+        near && self.inverse.fit(n, m, self.followed.packs(), coupling, true)
     }
 
-    /// K⁻¹ for the slopes that are kept; `false` if K is not positive definite.
+    /// Slopes but for a fall steeper than `steepest`, as a share of the node's resistance: the tangent of a
+    /// characteristic that falls too fast overshoots.
     #[inline(always)]
-    fn invert(&mut self, n: usize, m: &FlatMatrices) -> bool {
-        let [slope, coupling] = &self.kept;
-        let (slope, coupling) = (&slope.packs()[..n], &coupling.packs()[..n]);
-        // Row by row the transpose: its inverse then stands column by column.
-        let inverse = &mut self.inverse.packs_mut()[..self.nodes * n];
-        let columns = m.by_tangential.packs().chunks_exact(2 * n);
-        for (i, (to, column)) in inverse.chunks_exact_mut(n).zip(columns).enumerate() {
-            let (b, p) = column.split_at(n);
-            for k in 0..n {
-                to[k] = (-coupling[k]).mul_add(p[k], b[k]);
-            }
-            // The diagonal by a whole pack, see `gauss_jordan`.
-            let (pack, lane) = (i / LANES, i % LANES);
-            to[pack] = gauss_jordan::UNIT[lane].mul_add(slope[pack], to[pack]);
-        }
-        gauss_jordan::invert_rows(inverse, n, self.nodes, self.room.packs_mut())
-    }
-}
-
-impl Newton {
-    /// −δ_t from the `residual` into `direction`, and `of_step`; with K⁻¹ as it is kept, corrected for what slopes
-    /// have changed since: x ← K⁻¹ (r − (K' − K) x).
-    #[inline(always)]
-    fn solve(&mut self, n: usize, m: &FlatMatrices, t: &Traction) {
-        let (inverse, by_tangential) = (self.inverse.packs(), m.by_tangential.packs());
-        let [kept_slope, kept_coupling] = &self.kept;
-        let (kept_slope, kept_coupling) = (&kept_slope.packs()[..n], &kept_coupling.packs()[..n]);
-        let (slope, coupling) = (&self.followed.packs()[..n], &t.coupling.packs()[..n]);
-        let residual = &self.residual.packs()[..n];
-        let step = &mut self.direction.packs_mut()[..n];
-        let of_step = &mut self.of_step.packs_mut()[..2 * n];
-        let left = &mut self.room.packs_mut()[..n];
-        dense::multiply(step, inverse, residual);
-        dense::multiply(of_step, by_tangential, step);
-        let corrections = if self.new { 0 } else { CORRECTIONS };
-        for _ in 0..corrections {
-            for k in 0..n {
-                let by_slope = (slope[k] - kept_slope[k]).mul_add(-step[k], residual[k]);
-                left[k] = (coupling[k] - kept_coupling[k]).mul_add(of_step[n + k], by_slope);
-            }
-            dense::multiply(step, inverse, left);
-            dense::multiply(of_step, by_tangential, step);
+    fn follow(&mut self, n: usize, m: &FlatMatrices, t: &Traction, steepest: f64) {
+        let steepest = Pack::splat(-steepest);
+        let (own, slope) = (&m.resistance.packs()[..n], &t.slip_slope.packs()[..n]);
+        let followed = &mut self.followed.packs_mut()[..n];
+        for k in 0..n {
+            followed[k] = slope[k].max(steepest * own[k]);
         }
     }
 }
@@ -260,7 +185,7 @@ impl Stage {
         changes: Changes,
     ) -> bool {
         let (newton, t) = (&mut self.newton, &self.traction);
-        if !newton.renew_inverse(n, m, t, iteration, changes) {
+        if !newton.prepare(n, m, t, iteration, changes) {
             return false;
         }
         let (v, v_free) = (&self.v.packs()[..2 * n], &self.v_free.packs()[..2 * n]);
@@ -287,7 +212,15 @@ impl Stage {
             let left = tangential[k] - of_tangential[k] - of_normal[k];
             residual[k] = coupling[k].mul_add(direction_n[k], -left);
         }
-        newton.solve(n, m, t);
+        newton.inverse.solve(
+            n,
+            m,
+            &newton.followed.packs()[..n],
+            coupling,
+            residual,
+            &mut newton.direction.packs_mut()[..n],
+            &mut newton.of_step.packs_mut()[..2 * n],
+        );
         // What the linear equations make of the forces: f_t = B d_t + P φ at the end of the direction.
         let (direction_t, direction_n) = newton.direction.packs_mut()[..2 * n].split_at_mut(n);
         let (of_tangential, of_normal) = (&newton.of_tangential.packs()[..n], &newton.of_normal.packs()[..n]);
@@ -311,7 +244,7 @@ impl Stage {
         changes: Changes,
     ) -> bool {
         let n = &mut self.newton;
-        let steepest_fall = n.steepest_fall(iteration, changes);
+        let steepest_fall = STEEPEST_FALL[usize::from(n.near(iteration, changes))];
         n.forget();
         let (nodes, stride) = (n.nodes, self.placed.slip.len());
         let size = 2 * nodes;
@@ -382,7 +315,7 @@ impl Stage {
             most = most.max(inside[k] * x[k].abs().max(z[k].abs()) / scale);
         }
         // By way of memory: what ends there becomes vector instructions.
-        self.newton.room.packs_mut()[0] = most;
+        self.newton.most = most;
         most.largest()
     }
 
