@@ -1,12 +1,13 @@
 //! The inverse of the tangential Newton matrix, kept from one iteration and step to the next: mended node by node
 //! where a slope has changed much, corrected while it is applied for what is left, made anew where neither serves.
 
-use super::matrices::FlatMatrices;
+use super::matrices::{columns, FlatMatrices};
 use super::{dense, gauss_jordan};
 use crate::pack::{Aligned, Pack, LANES};
 
-/// Change of a slope, as a share of what resists at the node, up to which corrections serve.
-const SAME_SLOPE: f64 = 0.3;
+/// Change of a slope, as a share of what resists at the node, up to which corrections serve: as a rule, and where
+/// convergence is slow.
+const SAME_SLOPE: [f64; 2] = [0.3, 0.03];
 /// Corrections for what slopes have changed: each multiplies the error by that share.
 const CORRECTIONS: usize = 2;
 /// A share of the nodes, one in this many, may be mended; with more, an inverse made anew costs no more.
@@ -38,7 +39,7 @@ pub(super) struct KeptInverse {
 impl KeptInverse {
     pub(super) fn new(nodes: usize, stride: usize) -> Self {
         Self {
-            columns: Aligned::zeros(stride * stride),
+            columns: Aligned::zeros(stride * columns(nodes)),
             slope: Aligned::zeros(stride),
             coupling: Aligned::zeros(stride),
             known: false,
@@ -74,7 +75,7 @@ impl KeptInverse {
         Some(from)
     }
 
-    /// Makes the inverse fit for `slope` and `coupling`, made anew if `anew`; `false` if K is not positive definite.
+    /// Makes the inverse fit for `slope` and `coupling`, closely if `close`; `false` if K is not positive definite.
     #[inline(always)]
     pub(super) fn fit(
         &mut self,
@@ -82,10 +83,10 @@ impl KeptInverse {
         m: &FlatMatrices,
         slope: &[Pack],
         coupling: &[Pack],
-        anew: bool,
+        close: bool,
     ) -> bool {
         self.exact = false;
-        if self.known && !anew && self.mend(n, m, slope) {
+        if self.known && self.mend(n, m, slope, SAME_SLOPE[usize::from(close)]) {
             return true;
         }
         self.slope.packs_mut()[..n].copy_from_slice(&slope[..n]);
@@ -117,14 +118,14 @@ impl KeptInverse {
     /// Mends the inverse for the nodes whose slope has changed too much for corrections; `false`, with an inverse
     /// that is of no more use, if they are too many or K is no longer positive definite.
     #[inline(always)]
-    fn mend(&mut self, n: usize, m: &FlatMatrices, slope: &[Pack]) -> bool {
+    fn mend(&mut self, n: usize, m: &FlatMatrices, slope: &[Pack], same: f64) -> bool {
         let own = &m.resistance.packs()[..n];
         let kept = &self.slope.packs()[..n];
         let beyond = &mut self.room.packs_mut()[..n];
         let mut farthest = Pack::splat(f64::MIN);
         for k in 0..n {
             let change = (slope[k] - kept[k]).abs();
-            beyond[k] = change - Pack::splat(SAME_SLOPE) * (own[k] + slope[k].min(kept[k]));
+            beyond[k] = change - Pack::splat(same) * (own[k] + slope[k].min(kept[k]));
             farthest = farthest.max(beyond[k]);
         }
         // By way of memory: what ends there becomes vector instructions.

@@ -4,7 +4,7 @@
 use super::dense;
 use super::linear::Linear;
 use crate::contact::NormalSlopes;
-use crate::pack::Aligned;
+use crate::pack::{Aligned, LANES};
 
 /// For stage equations with coefficient a \[s\] (γh/2 of the step h).
 #[derive(Clone, Debug)]
@@ -165,8 +165,8 @@ impl FlatMatrices {
         Self {
             normal_slope: Aligned::zeros(stride),
             resistance: Aligned::zeros(stride),
-            by_tangential: Aligned::zeros(2 * stride * stride),
-            by_normal: Aligned::zeros(2 * stride * stride),
+            by_tangential: Aligned::zeros(2 * stride * columns(nodes)),
+            by_normal: Aligned::zeros(2 * stride * columns(nodes)),
             room: [(); 2].map(|()| Aligned::zeros(nodes * nodes)),
         }
     }
@@ -215,6 +215,11 @@ impl FlatMatrices {
         }
         true
     }
+}
+
+/// Columns of a matrix per contact node: an even number, and a full pack, which is compiled without a loop, of few.
+pub(super) fn columns(nodes: usize) -> usize {
+    nodes.next_multiple_of(2).max(LANES)
 }
 
 /// Unit vector of a road axis (0: along, 1: up) in the frame of a block turned by `angle` \[rad\].

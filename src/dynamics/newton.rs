@@ -20,11 +20,11 @@ const NEAR_CHANGE: f64 = 3.0;
 /// tangent, and the flatter slope creeps to a solution instead.
 const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
 
-/// Iterations before which the inverse of an earlier iteration may serve, while slopes are near.
+/// Iterations before which an inverse for slopes that are only near may serve.
 const CHORDS: usize = 4;
 /// Changes are not taken to shrink more slowly than this.
 const WORST_CONTRACTION: f64 = 0.9;
-/// Ratio of a change to the one before, above which the inverse is made anew.
+/// Ratio of a change to the one before, above which the inverse has to be closer.
 const SLOW: f64 = 0.2;
 /// Share of the sliding speed that adds to the smoothing speed where a change is judged: friction changes over
 /// the smoothing speed where a node sticks and over decades of speed where it slips.
@@ -147,15 +147,16 @@ impl Newton {
         iteration: usize,
         changes: Changes,
     ) -> bool {
-        let anew = iteration >= CHORDS || changes[1] > SLOW * changes[0];
+        let close = iteration >= CHORDS || changes[1] > SLOW * changes[0];
         let near = self.near(iteration, changes);
         self.follow(n, m, t, STEEPEST_FALL[usize::from(near)]);
         let coupling = t.coupling.packs();
-        if self.inverse.fit(n, m, self.followed.packs(), coupling, anew) {
+        if self.inverse.fit(n, m, self.followed.packs(), coupling, close) {
             return true;
         }
         // Many nodes that fall together resist less than each alone.
         self.follow(n, m, t, STEEPEST_FALL[0]);
+        self.inverse.forget();
         near && self.inverse.fit(n, m, self.followed.packs(), coupling, true)
     }
 
