@@ -30,6 +30,7 @@ DURATION, STEP = 0.03, 20e-6  # s
 CONVERGED = ["solver.max_step=0.3e-6", "solver.tolerance=1e-4"]
 LENGTHS = (15, 45)  # mm
 STEPS = (2.5, 5, 10)  # us, internal, at most
+TOLERANCES = (5e-3, 0.1)  # of a step: as by default, and so loose that steps are equal
 # What the speed on its own is judged against: no choice of ours is in it but a fine mesh.
 FINE = {15: ["solver.elements_along=20", "solver.elements_up=14", "solver.max_step=0.3e-6"],
         45: ["solver.elements_along=42", "solver.elements_up=12", "solver.max_step=0.6e-6"]}
@@ -134,15 +135,17 @@ class Bench:
     def cheapest(self, length: int) -> tuple[str, ...]:
         """Settings for the peers' equations; peers choose their tolerance the same way."""
         if length not in self.chosen:
-            candidates = [(f"solver.max_step={step}e-6",) for step in STEPS]
+            candidates = [(f"solver.max_step={step}e-6", f"solver.tolerance={tolerance}")
+                          for step in STEPS for tolerance in TOLERANCES]
             self.chosen[length] = self.choose(length, candidates, self.reference(length), "the same equations")
         return self.chosen[length]
 
     def fastest(self, length: int) -> tuple[str, ...]:
         """Settings for a block of its own: contact points are a choice as well as the step."""
         if length not in self.quickest:
-            candidates = [(f"solver.contact_points={points}", f"solver.max_step={step}e-6")
-                          for points in POINTS[length] for step in STEPS[1:]]
+            candidates = [(f"solver.contact_points={points}", f"solver.max_step={step}e-6",
+                           f"solver.tolerance={tolerance}")
+                          for points in POINTS[length] for step in STEPS[1:] for tolerance in TOLERANCES]
             self.quickest[length] = self.choose(length, candidates, self.fine_reference(length), "a fine mesh")
         return self.quickest[length]
 

@@ -219,9 +219,8 @@ mod tests {
             }
             m.resistance[j] = b(j, j);
         }
-        let packed = |f: &dyn Fn(usize) -> f64| {
-            [Pack([f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)])]
-        };
+        let packed =
+            |f: &dyn Fn(usize) -> f64| [Pack([f(0), f(1), f(2), f(3), f(4), f(5), f(6), f(7)])];
         let mut inverse = KeptInverse::new(nodes, nodes);
         let old = |i: usize| 0.1 * i as f64;
         let (slope, coupling) = (packed(&old), packed(&|i| 0.3 - 0.05 * i as f64));

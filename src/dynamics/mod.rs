@@ -4,6 +4,7 @@ pub mod dense;
 pub mod energy;
 pub mod equilibrium;
 pub mod gauss_jordan;
+pub mod iteration;
 pub mod kept_inverse;
 mod kinematics;
 pub mod linear;
@@ -13,6 +14,7 @@ pub mod stage;
 pub mod state;
 pub mod step;
 pub mod tr_bdf2;
+mod turned;
 
 pub use energy::Ledger;
 pub use kinematics::{kinematics, Kinematics};

@@ -1,19 +1,18 @@
-//! Newton directions for the contact velocities of a stage, in two forms: with the normal velocities
-//! eliminated for a block that is not turned, and with the full matrix for all else.
+//! The Newton direction of a block that is not turned, with the normal velocities eliminated, and what directions
+//! share.
 
-use super::kinematics::Kinematics;
-use super::linear::Linear;
-use super::matrices::{FlatMatrices, StageMatrices};
-use super::stage::Stage;
 use super::dense;
 use super::kept_inverse::KeptInverse;
+use super::linear::Linear;
+use super::matrices::FlatMatrices;
+use super::stage::Stage;
 use crate::contact::Traction;
 use crate::pack::{larger, Aligned, Pack};
 
 /// Largest fall of friction with speed that a direction follows, as a share of the block's own
 /// resistance: far from the solution the tangent of a steeper fall overshoots, near it only the
 /// tangent converges fast.
-const STEEPEST_FALL: [f64; 2] = [0.3, 0.95];
+pub(super) const STEEPEST_FALL: [f64; 2] = [0.3, 0.95];
 /// Last change, as a share of the smoothing speed, below which the solution is taken to be near, if changes fall.
 const NEAR_CHANGE: f64 = 3.0;
 /// Iterations in which the solution is taken to be near in any case. After them the fall is too steep for the
@@ -26,10 +25,6 @@ const CHORDS: usize = 4;
 const WORST_CONTRACTION: f64 = 0.9;
 /// Ratio of a change to the one before, above which the inverse has to be closer.
 const SLOW: f64 = 0.2;
-/// Share of the sliding speed that adds to the smoothing speed where a change is judged: friction changes over
-/// the smoothing speed where a node sticks and over decades of speed where it slips.
-const SLIP_SHARE: f64 = 0.1;
-
 /// Last two changes of a stage's velocities, as shares of the speed over which friction changes: the last but one
 /// and the last.
 pub(super) type Changes = [f64; 2];
@@ -38,35 +33,35 @@ pub(super) type Changes = [f64; 2];
 #[derive(Clone, Debug)]
 pub(super) struct Newton {
     /// Change of the contact velocities \[m/s\].
-    direction: Aligned,
+    pub(super) direction: Aligned,
     /// v − v_free \[m/s\].
-    difference: Aligned,
+    pub(super) difference: Aligned,
     /// f_n + (assumed slope)·(v − v_free)_n \[N\].
-    normal: Aligned,
+    pub(super) normal: Aligned,
     /// B d_t \[N\] and Pᵀ d_t \[m/s\].
-    of_tangential: Aligned,
+    pub(super) of_tangential: Aligned,
     /// The same of −δ_t.
-    of_step: Aligned,
+    pub(super) of_step: Aligned,
     /// P φ \[N\] and A⁻¹ φ \[m/s\].
-    of_normal: Aligned,
+    pub(super) of_normal: Aligned,
     /// What is left of the tangential balance, with the other sign \[N\].
-    residual: Aligned,
+    pub(super) residual: Aligned,
     /// −∂(tangential)/∂(tangential speed) that the direction follows \[N s/m\].
-    followed: Aligned,
-    matrix: Aligned,
-    inverse: KeptInverse,
+    pub(super) followed: Aligned,
+    pub(super) matrix: Aligned,
+    pub(super) inverse: KeptInverse,
     /// Changes shrink by this factor per iteration, as far as is known \[-\].
     pub(super) contraction: f64,
     /// No tangent is steeper than the first of [`STEEPEST_FALL`], in all iterations.
-    gentle: bool,
-    compact: Aligned,
+    pub(super) gentle: bool,
+    pub(super) compact: Aligned,
     /// −∂f/∂v per node in the block's frame: xx, xz, zx, zz \[N s/m\].
-    slopes: [Aligned; 4],
+    pub(super) slopes: [Aligned; 4],
     /// The largest of each eight, where it is looked for.
-    most: Pack,
+    pub(super) most: Pack,
     /// 1 per node, 0 in the padding.
-    inside: Aligned,
-    nodes: usize,
+    pub(super) inside: Aligned,
+    pub(super) nodes: usize,
 }
 
 impl Newton {
@@ -118,7 +113,8 @@ impl Newton {
         if iteration > 1 {
             // One good pair of changes does not make a contraction.
             let measured = larger(changes[1] / changes[0], 0.3 * self.contraction);
-            self.contraction = if measured < WORST_CONTRACTION { measured } else { WORST_CONTRACTION };
+            self.contraction =
+                if measured < WORST_CONTRACTION { measured } else { WORST_CONTRACTION };
         }
         changes[1] * self.contraction / (1.0 - self.contraction)
     }
@@ -131,7 +127,7 @@ impl Newton {
 
     /// Is the solution near, so that the direction may follow the tangent of a falling characteristic?
     #[inline(always)]
-    fn near(&self, iteration: usize, [before, last]: Changes) -> bool {
+    pub(super) fn near(&self, iteration: usize, [before, last]: Changes) -> bool {
         let falling = iteration == 1 || (last < NEAR_CHANGE && last < before);
         !self.gentle && (NEAR.contains(&iteration) || (falling && iteration < *NEAR.start()))
     }
@@ -224,7 +220,8 @@ impl Stage {
         );
         // What the linear equations make of the forces: f_t = B d_t + P φ at the end of the direction.
         let (direction_t, direction_n) = newton.direction.packs_mut()[..2 * n].split_at_mut(n);
-        let (of_tangential, of_normal) = (&newton.of_tangential.packs()[..n], &newton.of_normal.packs()[..n]);
+        let (of_tangential, of_normal) =
+            (&newton.of_tangential.packs()[..n], &newton.of_normal.packs()[..n]);
         let of_step = &newton.of_step.packs()[..2 * n];
         let force = &mut self.force.packs_mut()[..2 * n];
         for k in 0..n {
@@ -234,117 +231,5 @@ impl Stage {
             direction_t[k] = -direction_t[k];
         }
         true
-    }
-
-    /// (S + G) δ = f − S (v − v_free) with the full matrix of the turned block.
-    pub(super) fn full_direction(
-        &mut self,
-        matrices: &StageMatrices,
-        motion: &Kinematics,
-        iteration: usize,
-        changes: Changes,
-    ) -> bool {
-        let n = &mut self.newton;
-        let steepest_fall = STEEPEST_FALL[usize::from(n.near(iteration, changes))];
-        n.forget();
-        let (nodes, stride) = (n.nodes, self.placed.slip.len());
-        let size = 2 * nodes;
-        let place = |c: usize| c / nodes * stride + c % nodes;
-        let [sin, cos] = motion.sin_cos;
-        let matrix = &mut n.matrix[..size * size];
-        matrix.copy_from_slice(&matrices.inverse_delassus);
-        let t = &self.traction;
-        for i in 0..nodes {
-            self.force[i] = cos * t.tangential[i] + sin * t.normal[i];
-            self.force[stride + i] = -sin * t.tangential[i] + cos * t.normal[i];
-            let steepest = -steepest_fall * matrices.inverse_delassus[i * size + i];
-            let tt = t.slip_slope[i].max(steepest);
-            let (tn, nn) = (t.coupling[i], t.approach_slope[i]);
-            // Rᵀ G R with G = [tt tn; 0 nn] in the road frame.
-            let (gx, gz) = (tt * cos + tn * sin, -tt * sin + tn * cos);
-            let slopes = [
-                cos * gx + sin * nn * sin,
-                cos * gz + sin * nn * cos,
-                -sin * gx + cos * nn * sin,
-                -sin * gz + cos * nn * cos,
-            ];
-            matrix[i * size + i] += slopes[0];
-            matrix[i * size + nodes + i] += slopes[1];
-            matrix[(nodes + i) * size + i] += slopes[2];
-            matrix[(nodes + i) * size + nodes + i] += slopes[3];
-            for (kept, slope) in n.slopes.iter_mut().zip(slopes) {
-                kept[i] = slope;
-            }
-        }
-        for c in 0..size {
-            n.difference[c] = self.v[place(c)] - self.v_free[place(c)];
-        }
-        for (c, row) in matrices.inverse_delassus.chunks_exact(size).enumerate() {
-            let product: f64 = row.iter().zip(&n.difference).map(|(s, d)| s * d).sum();
-            n.compact[c] = self.force[place(c)] - product;
-        }
-        if !dense::factor(matrix, size) {
-            return false;
-        }
-        dense::solve(matrix, &mut n.compact);
-        n.direction.fill(0.0);
-        for (c, step) in n.compact.iter().enumerate() {
-            n.direction[place(c)] = *step;
-        }
-        // What the linear equations make of the forces.
-        let [xx, xz, zx, zz] = &n.slopes;
-        for i in 0..nodes {
-            let (dx, dz) = (n.compact[i], n.compact[nodes + i]);
-            self.force[i] -= xx[i] * dx + xz[i] * dz;
-            self.force[stride + i] -= zx[i] * dx + zz[i] * dz;
-        }
-        true
-    }
-
-    /// Largest change of a velocity that the direction asks for, as a share of the speed over which friction
-    /// changes: `smoothing_speed` \[m/s\] where a node sticks, more where it slips.
-    #[inline(always)]
-    pub(super) fn change(&mut self, n: usize, smoothing_speed: f64) -> f64 {
-        let (share, smoothing) = (Pack::splat(SLIP_SHARE), Pack::splat(smoothing_speed));
-        let slip = &self.placed.slip.packs()[..n];
-        let (x, z) = self.newton.direction.packs()[..2 * n].split_at(n);
-        let inside = &self.newton.inside.packs()[..n];
-        let mut most = Pack::default();
-        for k in 0..n {
-            // The padding is carried along with the face, which no direction accounts for.
-            let scale = slip[k].abs().mul_add(share, smoothing);
-            most = most.max(inside[k] * x[k].abs().max(z[k].abs()) / scale);
-        }
-        // By way of memory: what ends there becomes vector instructions.
-        self.newton.most = most;
-        most.largest()
-    }
-
-    /// Goes along the direction; the forces are already those at its end.
-    ///
-    /// A tangential speed that would change its sign stops at zero: friction is concave on either
-    /// side, so from there the iteration cannot overshoot again. The last step is `whole`: velocities and forces
-    /// then satisfy the linear equations to rounding.
-    #[inline(always)]
-    pub(super) fn take_direction(&mut self, n: usize, motion: &Kinematics, whole: bool) {
-        let [sin, cos] = motion.sin_cos.map(Pack::splat);
-        let newton = &mut self.newton;
-        let (direction_x, direction_z) = newton.direction.packs()[..2 * n].split_at(n);
-        let inside = &newton.inside.packs()[..n];
-        let slip = &self.placed.slip.packs()[..n];
-        let (vx, vz) = self.v.packs_mut()[..2 * n].split_at_mut(n);
-        let zero = Pack::default();
-        for k in 0..n {
-            let (mut dx, dz) = (inside[k] * direction_x[k], inside[k] * direction_z[k]);
-            if !whole {
-                let turned = sin * dz - slip[k];
-                // Where slip · (slip + change) is negative it crosses zero.
-                let after = cos.mul_add(dx, -turned);
-                let stopped = if cos == Pack::splat(1.0) { turned } else { turned / cos };
-                dx = (-(slip[k] * after)).if_above(zero, stopped, dx);
-            }
-            vx[k] += dx;
-            vz[k] += dz;
-        }
     }
 }

@@ -2,28 +2,13 @@
 //! contact and friction at the end of it.
 
 use super::dense;
+use super::iteration::Convergence;
 use super::kinematics::{to_block, Kinematics};
 use super::linear::Linear;
 use super::matrices::StageMatrices;
 use super::newton::Newton;
 use crate::contact::{Face, Placed, Traction};
 use crate::pack::{Aligned, Pack};
-
-/// How the Newton iteration of a stage went.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Convergence {
-    /// Iterations done.
-    pub iterations: usize,
-    /// Last change of a velocity \[m/s\], of a node that sticks.
-    pub change: f64,
-    /// Did it converge?
-    pub converged: bool,
-}
-
-/// Iterations after which a stage is given up and the step made smaller.
-const MAX_ITERATIONS: usize = 150;
-/// Iterations after which the full Newton matrix is used.
-const FLAT_ITERATIONS: usize = 12;
 
 /// Explicit parts (starred in the theory, eq. 3.3), unknowns and buffers of a stage.
 #[derive(Clone, Debug)]
@@ -238,62 +223,9 @@ impl Stage {
         }
     }
 
-    /// Newton's method on the contact velocities: S (v − v_free) = f(v).
-    #[inline(always)]
-    fn iterate(
-        &mut self,
-        n: usize,
-        face: &Face,
-        matrices: &StageMatrices,
-        motion: &Kinematics,
-        factor: &Aligned,
-    ) -> Convergence {
-        let flat = motion.sin_cos[0] == 0.0;
-        let mut convergence = Convergence { iterations: 0, change: 0.0, converged: true };
-        let mut guess_left = true;
-        let mut changes = [f64::INFINITY; 2];
-        loop {
-            let highest = self.evaluate(n, face, matrices.a, motion, factor);
-            if convergence.iterations == 0 && highest <= 0.0 {
-                if !guess_left {
-                    // The road is out of reach altogether.
-                    self.force.fill(0.0);
-                    return convergence;
-                }
-                guess_left = false;
-                self.v.copy_from_slice(&self.v_free);
-                continue;
-            }
-            convergence.iterations += 1;
-            // The elimination of the normal velocities converges fast where the contact is as
-            // stiff as it assumes; where it does not, the full matrix serves.
-            let iteration = convergence.iterations;
-            let solved = if flat && iteration <= FLAT_ITERATIONS {
-                self.flat_direction(n, &matrices.flat, iteration, changes)
-            } else {
-                self.full_direction(matrices, motion, iteration, changes)
-            };
-            if !solved {
-                convergence.converged = false;
-                return convergence;
-            }
-            changes = [changes[1], self.change(n, face.smoothing_speed)];
-            convergence.change = changes[1] * face.smoothing_speed;
-            let near = self.newton.error_after(iteration, changes) < TOLERANCE;
-            self.take_direction(n, motion, near);
-            if near {
-                return convergence;
-            }
-            if iteration == MAX_ITERATIONS {
-                convergence.converged = false;
-                return convergence;
-            }
-        }
-    }
-
     /// Forces and slopes at the present velocities; returns the highest pressure \[Pa\].
     #[inline(always)]
-    fn evaluate(
+    pub(super) fn evaluate(
         &mut self,
         n: usize,
         face: &Face,
@@ -324,7 +256,8 @@ impl Stage {
         let modes = self.rhs.packs().len();
         let force = &self.force.packs()[..2 * n];
         for (j, h) in h.iter_mut().enumerate().take(linear.base.len()) {
-            *h += matrices.a * dense::dot(
+            *h += matrices.a
+                * dense::dot(
                     &matrices.q.packs()[2 * j * n..2 * (j + 1) * n],
                     force,
                     &mut self.sums,
@@ -354,11 +287,6 @@ impl Stage {
         }
     }
 }
-
-/// Estimated error of the velocities at which Newton's method stops, as a share of the speed over which friction
-/// changes. A tenth of it moves the independent solutions by less than what a change of friction by a millionth
-/// does; the error that the step control allows is larger by far.
-const TOLERANCE: f64 = 3e-3;
 
 fn times_2x2(matrix: &[f64; 4], [x, y]: [f64; 2]) -> [f64; 2] {
     [matrix[0] * x + matrix[1] * y, matrix[2] * x + matrix[3] * y]

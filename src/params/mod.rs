@@ -268,7 +268,7 @@ impl Default for Solver {
             elements_up: 0,
             contact_points: 0,
             frequency_bound: 10e3,
-            tolerance: 1e-2,
+            tolerance: 5e-3,
             max_step: 5e-6,
             min_step: 0.1e-6,
         }

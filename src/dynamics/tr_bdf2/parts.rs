@@ -147,7 +147,8 @@ impl TrBdf2 {
         let guess = &mut stage.v.packs_mut()[..2 * n];
         let dv = &self.dv.packs()[..2 * n];
         let on = Pack::splat((1.0 - GAMMA) / GAMMA);
-        let (bent, middle) = (Pack::splat((1.0 - GAMMA) / (GAMMA * GAMMA)), Pack::splat(-GAMMA * h));
+        let (bent, middle) =
+            (Pack::splat((1.0 - GAMMA) / (GAMMA * GAMMA)), Pack::splat(-GAMMA * h));
         for k in 0..2 * n {
             u_star[k] = weight.mul_add(v[k] + v_mid[k], u[k]);
             let change = v_mid[k] - v[k];
