@@ -2,6 +2,7 @@
 //! block's own free modes add to them.
 
 use super::fixed_interface::eigenpairs_below;
+use super::product::product;
 use crate::error::Fault;
 use crate::fe::FullModel;
 use crate::mesh::Mesh;
@@ -50,7 +51,7 @@ impl CraigBampton {
         let lacking = lacking(&free_modes, &contact, &inner, &constraint_modes);
         let inner_modes = joined(fixed_modes, &lacking, &m_ii);
         let basis = basis(full.dofs(), &contact, &inner, &constraint_modes, &inner_modes);
-        let project = |matrix: &CscMatrix<f64>| basis.transpose() * (matrix * &basis);
+        let project = |matrix: &CscMatrix<f64>| basis.tr_mul(&product(matrix, &basis));
         Ok(Self {
             stiffness: project(&full.stiffness),
             mass: project(&full.mass),
@@ -87,11 +88,11 @@ fn joined(fixed_modes: DMatrix<f64>, more: &DMatrix<f64>, mass: &CscMatrix<f64>)
     let mut all = fixed_modes;
     for column in more.column_iter() {
         let mut rest = DMatrix::from_column_slice(column.len(), 1, column.clone_owned().as_slice());
-        let norm = |vector: &DMatrix<f64>| (vector.transpose() * (mass * vector))[(0, 0)].sqrt();
+        let norm = |vector: &DMatrix<f64>| vector.dot(&product(mass, vector)).sqrt();
         let before = norm(&rest);
         // Twice is enough for orthogonality to rounding.
         for _ in 0..2 {
-            let share = all.transpose() * (mass * &rest);
+            let share = all.tr_mul(&product(mass, &rest));
             rest -= &all * share;
         }
         let left = norm(&rest);

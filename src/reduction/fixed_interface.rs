@@ -1,5 +1,6 @@
 //! Lowest eigenpairs of a sparse pencil by subspace iteration.
 
+use super::product::product;
 use crate::error::Fault;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use nalgebra_sparse::factorization::CscCholesky;
@@ -43,13 +44,16 @@ fn lowest(
     let dofs = mass.nrows();
     let size = (wanted + wanted.max(8)).min(dofs);
     let mut basis = start_vectors(dofs, size);
+    let mut mass_basis = product(mass, &basis);
     let mut last = vec![0.0; wanted];
     for _ in 0..MAX_ITERATIONS {
-        let image = factor.solve(&(mass * &basis));
-        let k = image.transpose() * (mass * &basis);
-        let m = image.transpose() * (mass * &image);
+        let image = factor.solve(&mass_basis);
+        let mass_image = product(mass, &image);
+        let k = image.tr_mul(&mass_basis);
+        let m = image.tr_mul(&mass_image);
         let (values, vectors) = dense_pencil(&k, &m)?;
-        basis = image * vectors;
+        basis = image * &vectors;
+        mass_basis = mass_image * vectors;
         let moved = values.iter().zip(&last).map(|(a, b)| ((a - b) / a).abs()).fold(0.0, f64::max);
         last.copy_from_slice(&values[..wanted]);
         if moved < TOLERANCE {

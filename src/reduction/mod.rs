@@ -4,6 +4,7 @@ mod craig_bampton;
 mod decouple;
 mod fixed_interface;
 mod interface;
+mod product;
 
 pub use craig_bampton::CraigBampton;
 pub use decouple::Reduction;
