@@ -56,8 +56,7 @@ fn two_pivots(matrix: &mut [Pack], n: usize, k: usize, room: &mut [Pack]) -> boo
     let Some([[corner, upper], [lower, q]]) = invert_block(block) else { return false };
     let (corner, upper) = (Pack::splat(corner), Pack::splat(upper));
     let (lower, q) = (Pack::splat(lower), Pack::splat(q));
-    let [first, second] = [UNIT[lane], UNIT[lane + 1]];
-    let keep = Pack::splat(1.0) - first - second;
+    let (first, second, keep) = (UNIT[lane], UNIT[lane + 1], KEEP[lane]);
     // Masks instead of single numbers written: a row that was written in parts cannot be read as a whole
     // until all parts have reached the cache.
     row_a[pack] = keep.mul_add(row_a[pack], first);

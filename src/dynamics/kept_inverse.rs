@@ -31,7 +31,7 @@ pub(super) struct KeptInverse {
     exact: bool,
     /// Nodes mended since it was made.
     mended: f64,
-    /// Two rows for the elimination, and one for corrections.
+    /// Two rows: of the elimination, of what is beyond and a column that is mended, of corrections.
     room: Aligned,
     nodes: usize,
 }
