@@ -12,6 +12,7 @@ use crate::gap::{
     campaign, friction_fit, friction_record, friction_told, import, json, packed, predict, report,
     score, suite, verify,
 };
+use crate::threads;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -301,10 +302,7 @@ fn run_diagnose(
             eprint!("\r{:3.0} %  {what}, about {left:.0} s left          ", 100.0 * share);
         }
     };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(jobs)
-        .build()
-        .map_err(|e| Fault::File { path: "threads".into(), reason: e.to_string() })?;
+    let pool = threads::pool(jobs)?;
     let diagnosis = pool.install(|| diagnose::diagnose(campaign, settings, &progress))?;
     if shown {
         eprintln!();

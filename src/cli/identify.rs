@@ -12,6 +12,7 @@ use crate::study::identify::run::{identify, Progress, Task};
 use crate::study::identify::{laws, report, space};
 use crate::study::paper::{Column, TABLE_1};
 use crate::study::slides::Reductions;
+use crate::threads;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -87,10 +88,7 @@ pub struct Arguments {
 /// Runs it.
 pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     let task = task(arguments)?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.unwrap_or(0))
-        .build()
-        .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
+    let pool = threads::pool(arguments.threads.unwrap_or(0))?;
     let best = arguments.out.join("best.toml");
     let found = pool.install(|| {
         identify(&task, &Reductions::default(), |progress| {

@@ -13,6 +13,7 @@ use crate::study;
 use crate::study::identify::objective::Fineness;
 use crate::study::measured::Measurements;
 use crate::study::report::{html, Study};
+use crate::threads;
 
 const EXAMPLES: &str = "\
 Examples:
@@ -58,10 +59,7 @@ pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
         arguments.wear.as_deref(),
         arguments.stiffness.as_deref(),
     )?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.unwrap_or(0))
-        .build()
-        .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
+    let pool = threads::pool(arguments.threads.unwrap_or(0))?;
     let bar = progress();
     let studies = pool.install(|| {
         study::run(&arguments.study, &params, &fineness, &measured, |name, done, count| {

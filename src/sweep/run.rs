@@ -14,6 +14,7 @@ use crate::error::Fault;
 use crate::params::Params;
 use crate::reduction::Reduction;
 use crate::scenario;
+use crate::threads;
 
 /// Runs all points of `plan` that `done` lacks, writes each to `journal` and shows it to `visit`;
 /// returns the records of all points in their order.
@@ -27,10 +28,7 @@ pub fn run(
     journal: Journal,
     visit: impl Fn(&Record) + Sync,
 ) -> Result<Vec<Record>, Fault> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(jobs)
-        .build()
-        .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
+    let pool = threads::pool(jobs)?;
     let mut known = vec![false; plan.points.len()];
     done.iter().for_each(|record| known[record.point] = true);
     let pending: Vec<usize> = (0..known.len()).filter(|i| !known[*i]).collect();
