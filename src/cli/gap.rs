@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::output::{self, Done, Stop};
+use super::threads;
 use crate::error::Fault;
 use crate::gap::diagnose::{self, Settings};
 use crate::gap::hypotheses::Method;
@@ -257,10 +258,7 @@ fn tell_closed(answers: &Path, labels: &Path, further: &Path) -> Result<(), Stop
 
 /// One campaign after the other; one that cannot be used is told and does not stop the others.
 fn check(folder: &Path, out: &Path) -> Result<(), Stop> {
-    let entries = std::fs::read_dir(folder).map_err(|e| Fault::File {
-        path: folder.display().to_string(),
-        reason: format!("{e}; name the folder of the campaigns"),
-    })?;
+    let entries = std::fs::read_dir(folder).map_err(|e| Fault::file(folder, &e))?;
     let mut campaigns: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     campaigns.retain(|path| {
         path.join("campaign.toml").exists() || path.extension().is_some_and(|e| e == "zip")
@@ -301,10 +299,7 @@ fn run_diagnose(
             eprint!("\r{:3.0} %  {what}, about {left:.0} s left          ", 100.0 * share);
         }
     };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(jobs)
-        .build()
-        .map_err(|e| Fault::File { path: "threads".into(), reason: e.to_string() })?;
+    let pool = threads::pool(jobs)?;
     let diagnosis = pool.install(|| diagnose::diagnose(campaign, settings, &progress))?;
     if shown {
         eprintln!();
@@ -362,8 +357,8 @@ fn friction(records: &[PathBuf], json: bool) -> Result<Done, Stop> {
 fn export(diagnosis: &Path, fmu: &Path, model: Model) -> Result<(), Stop> {
     let params = json::read_model(diagnosis, model.name())?;
     let plain = crate::fmi::package::pack(&[super::fmu::beside_this_program()?])?;
-    let failed = |reason: String| Fault::File { path: fmu.display().to_string(), reason };
-    let broken = |e: zip::result::ZipError| failed(e.to_string());
+    let failed = |e: std::io::Error| Fault::file(fmu, &e);
+    let broken = |e: zip::result::ZipError| Fault::unusable(fmu, e);
     let mut from = zip::ZipArchive::new(std::io::Cursor::new(plain)).map_err(broken)?;
     let mut to = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
     let options = zip::write::SimpleFileOptions::default();
@@ -371,12 +366,12 @@ fn export(diagnosis: &Path, fmu: &Path, model: Model) -> Result<(), Stop> {
         let mut entry = from.by_index(at).map_err(broken)?;
         let name = entry.name().map_err(broken)?.to_string();
         let mut bytes = Vec::new();
-        entry.read_to_end(&mut bytes).map_err(|e| failed(e.to_string()))?;
+        entry.read_to_end(&mut bytes).map_err(failed)?;
         if name == "resources/parameters.toml" {
             bytes = crate::params::load::to_toml(&params).into_bytes();
         }
         to.start_file(name, options).map_err(broken)?;
-        to.write_all(&bytes).map_err(|e| failed(e.to_string()))?;
+        to.write_all(&bytes).map_err(failed)?;
     }
     let packed = to.finish().map_err(broken)?.into_inner();
     output::to(Some(fmu), &packed)?;

@@ -4,8 +4,10 @@ use std::path::{Path, PathBuf};
 
 use super::output::{self, Done, Stop};
 use super::study::progress;
+use super::threads;
 use crate::error::Fault;
 use crate::params::{load, Params};
+use crate::scenario::config;
 use crate::study::identify::objective::Fineness;
 use crate::study::identify::residual::{self, Explained, Question};
 use crate::study::identify::run::{identify, Progress, Task};
@@ -87,10 +89,7 @@ pub struct Arguments {
 /// Runs it.
 pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     let task = task(arguments)?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.unwrap_or(0))
-        .build()
-        .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
+    let pool = threads::pool(arguments.threads.unwrap_or(0))?;
     let best = arguments.out.join("best.toml");
     let found = pool.install(|| {
         identify(&task, &Reductions::default(), |progress| {
@@ -153,13 +152,7 @@ fn write(path: &Path, params: &Params) -> Result<(), Stop> {
 
 fn task(arguments: &Arguments) -> Result<Task, Fault> {
     let mut start = match &arguments.start {
-        Some(path) => {
-            let text = std::fs::read_to_string(path).map_err(|e| Fault::File {
-                path: path.display().to_string(),
-                reason: e.to_string(),
-            })?;
-            load::from_toml(&text)?
-        }
+        Some(path) => load::from_toml(&config::read_text(path)?)?,
         None => start(),
     };
     let mut problems = Vec::new();

@@ -19,6 +19,7 @@ mod simulate;
 mod study;
 mod summary;
 mod sweep;
+mod threads;
 
 use std::process::ExitCode;
 

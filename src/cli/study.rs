@@ -6,6 +6,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::output::{self, Done, Stop};
+use super::threads;
 use crate::error::Fault;
 use crate::params::{load, Params};
 use crate::scenario::config;
@@ -58,10 +59,7 @@ pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
         arguments.wear.as_deref(),
         arguments.stiffness.as_deref(),
     )?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.unwrap_or(0))
-        .build()
-        .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
+    let pool = threads::pool(arguments.threads.unwrap_or(0))?;
     let bar = progress();
     let studies = pool.install(|| {
         study::run(&arguments.study, &params, &fineness, &measured, |name, done, count| {

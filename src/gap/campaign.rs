@@ -175,10 +175,8 @@ struct PlanFile {
 /// # Errors
 /// [`Fault::File`] or what is wrong with it.
 pub fn read_plan(path: &Path) -> Result<Plan, Fault> {
-    let shown = path.display().to_string();
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| Fault::File { path: shown.clone(), reason: e.to_string() })?;
-    parse_plan(&text, &shown)
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
+    parse_plan(&text, &path.display().to_string())
 }
 
 /// The same from the text of a campaign file; `shown` names it.
@@ -186,9 +184,8 @@ pub fn read_plan(path: &Path) -> Result<Plan, Fault> {
 /// # Errors
 /// What is wrong with it.
 pub fn parse_plan(text: &str, shown: &str) -> Result<Plan, Fault> {
-    let shown = shown.to_string();
-    let file: PlanFile = toml::from_str(text)
-        .map_err(|e| Fault::File { path: shown, reason: e.to_string().trim().to_string() })?;
+    let file: PlanFile =
+        toml::from_str(text).map_err(|e| Fault::unusable(shown, e.to_string().trim()))?;
     let mut problems = Vec::new();
     if file.format != "tread-block-campaign/1" {
         problems.push(Problem::new(
@@ -239,7 +236,7 @@ impl Campaign {
         let plan = match &source {
             Source::Folder(folder) => read_plan(&folder.join("campaign.toml"))?,
             Source::Packed(_) => {
-                let unread = |reason| Fault::File { path: shown.clone(), reason };
+                let unread = |reason| Fault::unusable(&shown, reason);
                 let bytes = source.bytes("campaign.toml").map_err(unread)?;
                 parse_plan(&String::from_utf8_lossy(&bytes), &shown)?
             }

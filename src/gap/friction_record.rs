@@ -72,8 +72,7 @@ pub fn read(path: &Path) -> Result<FrictionRecord, Fault> {
 }
 
 fn header(path: &Path) -> Result<Vec<String>, Fault> {
-    let fault = |reason: String| Fault::File { path: path.display().to_string(), reason };
-    let text = std::fs::read_to_string(path).map_err(|e| fault(e.to_string()))?;
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
     let first = text.lines().next().unwrap_or("").trim_start_matches('\u{feff}');
     Ok(first.split(',').map(|h| h.trim().to_string()).collect())
 }

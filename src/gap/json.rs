@@ -173,8 +173,8 @@ pub fn to_toml(model: &Map<String, Json>) -> String {
 /// # Errors
 /// A file that cannot be read or is no diagnosis.
 pub fn read_model(path: &Path, model: &str) -> Result<Params, Fault> {
-    let fault = |reason: String| Fault::File { path: path.display().to_string(), reason };
-    let text = std::fs::read_to_string(path).map_err(|e| fault(e.to_string()))?;
+    let fault = |reason: String| Fault::unusable(path, reason);
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
     let document: Json = serde_json::from_str(&text).map_err(|e| fault(e.to_string()))?;
     if document["schema"] != SCHEMA {
         return Err(fault(format!("schema is {}, not {SCHEMA}", document["schema"])));

@@ -23,10 +23,7 @@ pub fn predict(diagnosis: &Path, plan: &Path, model: &str, out: &Path) -> Result
     for spec in &plan.runs {
         let record = simulator.run(&params, spec, spec.duration_s)?;
         let target = out.join(&spec.file);
-        write(&target, &plan, spec, &record).map_err(|e| Fault::File {
-            path: target.display().to_string(),
-            reason: e.to_string(),
-        })?;
+        write(&target, &plan, spec, &record).map_err(|e| Fault::file(&target, &e))?;
     }
     Ok(plan.runs.len())
 }

@@ -59,9 +59,8 @@ fn strings(value: &Json) -> Vec<String> {
 }
 
 fn read(path: &Path) -> Result<Json, Fault> {
-    let fault = |reason: String| Fault::File { path: path.display().to_string(), reason };
-    let text = std::fs::read_to_string(path).map_err(|e| fault(e.to_string()))?;
-    serde_json::from_str(&text).map_err(|e| fault(e.to_string()))
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
+    serde_json::from_str(&text).map_err(|e| Fault::unusable(path, e))
 }
 
 /// Where the answer to a campaign is: ID/diagnosis.json, or ID.json.

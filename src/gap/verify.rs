@@ -29,8 +29,7 @@ pub struct Closed {
 /// # Errors
 /// Files that cannot be read, and what stops the block.
 pub fn closed(id: &str, answer: &Path, campaign: &Path) -> Result<Closed, Fault> {
-    let text = std::fs::read_to_string(answer)
-        .map_err(|e| Fault::File { path: answer.display().to_string(), reason: e.to_string() })?;
+    let text = std::fs::read_to_string(answer).map_err(|e| Fault::file(answer, &e))?;
     let document: Json = serde_json::from_str(&text).unwrap_or_default();
     let campaign = Campaign::load(campaign)?;
     let mut bench = Bench::new(&campaign, crate::effects::fit_specs(), Look::Whole)?;

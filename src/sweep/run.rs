@@ -30,7 +30,7 @@ pub fn run(
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(jobs)
         .build()
-        .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })?;
+        .map_err(|e| Fault::unusable("threads", e))?;
     let mut known = vec![false; plan.points.len()];
     done.iter().for_each(|record| known[record.point] = true);
     let pending: Vec<usize> = (0..known.len()).filter(|i| !known[*i]).collect();

@@ -28,10 +28,7 @@ use crate::scenario::{config::Config, Inputs};
 /// # Errors
 /// Reading or writing that fails; a line that is no question.
 pub fn serve(plan: &Plan, questions: impl BufRead, mut answers: impl Write) -> Result<(), Fault> {
-    let pipe = |e: std::io::Error| Fault::File {
-        path: "standard input or output".to_string(),
-        reason: e.to_string(),
-    };
+    let pipe = |e: std::io::Error| Fault::unusable("standard input or output", e);
     let greeting = json!({
         "points": plan.points.len(),
         "header": header(plan),

@@ -32,8 +32,7 @@ const DECIMALS: usize = 12;
 /// All that is wrong with the plan, or all that is wrong with its files; then nothing is written.
 pub fn import(plan_file: &Path, out: &Path) -> Result<Imported, Fault> {
     let shown = plan_file.display().to_string();
-    let text = std::fs::read_to_string(plan_file)
-        .map_err(|e| Fault::File { path: shown.clone(), reason: e.to_string() })?;
+    let text = std::fs::read_to_string(plan_file).map_err(|e| Fault::file(plan_file, &e))?;
     let plan = plan::parse(&text, &shown)?;
     let folder = plan_file.parent().unwrap_or(Path::new(""));
     let (mut problems, mut files, mut told) = (Vec::new(), Vec::new(), Vec::new());
@@ -55,7 +54,7 @@ pub fn import(plan_file: &Path, out: &Path) -> Result<Imported, Fault> {
         return Err(Fault::Invalid(problems));
     }
     let header = format!("# Made by `tread gap import {shown}`; import.json says how.\n");
-    let failed = |e: toml::ser::Error| Fault::File { path: shown.clone(), reason: e.to_string() };
+    let failed = |e: toml::ser::Error| Fault::unusable(plan_file, e);
     let campaign_text = header + &toml::to_string(&campaign_file).map_err(failed)?;
     // Sizes, pressures and the datasheet are judged as those of any campaign.
     campaign::parse_plan(&campaign_text, &shown)?;
@@ -69,8 +68,7 @@ pub fn import(plan_file: &Path, out: &Path) -> Result<Imported, Fault> {
 }
 
 fn write(path: &Path, text: &str) -> Result<(), Fault> {
-    let failed =
-        |e: std::io::Error| Fault::File { path: path.display().to_string(), reason: e.to_string() };
+    let failed = |e: std::io::Error| Fault::file(path, &e);
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder).map_err(failed)?;
     }
