@@ -1,0 +1,32 @@
+//! `tread gap friction`: friction records without block dynamics.
+
+use std::path::PathBuf;
+
+use crate::cli::output::{self, Done, Stop};
+use crate::gap::{friction_fit, friction_record, friction_told};
+
+/// Every record on its own; one that cannot be used is told and does not stop the others.
+pub fn run(records: &[PathBuf], json: bool) -> Result<Done, Stop> {
+    let (mut text, mut all, mut failed) = (String::new(), Vec::new(), None);
+    for path in records {
+        match friction_record::read(path) {
+            Ok(record) => {
+                let verdict = friction_fit::explain(&record);
+                text.push_str(&friction_told::table(&record, &verdict));
+                all.push(friction_told::document(&record, &verdict));
+            }
+            Err(fault) => {
+                eprintln!("{fault}");
+                failed = Some(fault);
+            }
+        }
+    }
+    if json {
+        text = serde_json::to_string_pretty(&all).unwrap_or_default() + "\n";
+    }
+    output::to_stdout(text.as_bytes())?;
+    match failed {
+        Some(_) => Ok(Done::Code(2)),
+        None => Ok(Done::Fine),
+    }
+}
