@@ -22,12 +22,7 @@ pub fn document(d: &Diagnosis) -> Json {
     json!({
         "schema": SCHEMA,
         "campaign": d.campaign.plan.id,
-        "decision": {
-            "kind": d.decision.kind.name(),
-            "effects": d.decision.effects,
-            "module": d.decision.module,
-            "text": diagnose::verdict(d),
-        },
+        "decision": decision(d),
         "hypotheses": hypotheses_json(d),
         "where": d.cells.iter().map(|c| json!({
             "run": c.run, "channel": c.channel, "phase": c.phase, "band_hz": c.band,
@@ -82,6 +77,16 @@ pub fn document(d: &Diagnosis) -> Json {
             "simulations": d.simulations(),
             "seconds": (d.seconds * 10.0).round() / 10.0,
         },
+    })
+}
+
+/// What was decided, and the verdict in words.
+pub fn decision(d: &Diagnosis) -> Json {
+    json!({
+        "kind": d.decision.kind.name(),
+        "effects": d.decision.effects,
+        "module": d.decision.module,
+        "text": diagnose::verdict(d),
     })
 }
 

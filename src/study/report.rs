@@ -1,6 +1,7 @@
 //! What a study leaves: files, pictures, and a verdict per statement of the paper.
 
 use crate::page::{self, escape};
+use serde_json::{json, Value};
 
 /// A statement of the paper and what our model says to it.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,6 +42,27 @@ pub struct Study {
     pub pictures: Vec<(String, String)>,
     /// Verdicts.
     pub verdicts: Vec<Verdict>,
+}
+
+impl Study {
+    /// What the study says, for programs; tables and pictures by the names of their files.
+    pub fn document(&self) -> Value {
+        let names = |files: &[(String, String)]| -> Vec<String> {
+            files.iter().map(|(name, _)| name.clone()).collect()
+        };
+        let verdicts: Vec<Value> = self
+            .verdicts
+            .iter()
+            .map(|v| json!({"statement": v.statement, "holds": v.holds, "number": v.number}))
+            .collect();
+        json!({
+            "study": self.name,
+            "title": self.title,
+            "notes": self.notes,
+            "files": names(&self.tables).into_iter().chain(names(&self.pictures)).collect::<Vec<_>>(),
+            "verdicts": verdicts,
+        })
+    }
 }
 
 /// CSV from a header and rows of numbers.

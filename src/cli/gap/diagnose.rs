@@ -4,12 +4,15 @@ use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use serde_json::json;
+
 use super::score;
 use crate::cli::output::{self, Done, Stop};
 use crate::cli::threads;
 use crate::error::Fault;
-use crate::gap::diagnose::{self, Settings};
+use crate::gap::diagnose::{self, Diagnosis, Settings};
 use crate::gap::hypotheses::Method;
+use crate::gap::score::{cases, figures};
 use crate::gap::{json, report};
 
 /// A step of the method.
@@ -39,7 +42,7 @@ pub fn settings(seed: u64, without: &[Step]) -> Settings {
     Settings { seed, method, hold_out: kept(Step::HoldOut) }
 }
 
-/// Diagnoses one campaign, leaves `diagnosis.json` and `report.html` in `out` and tells the verdict.
+/// Diagnoses one campaign and tells the verdict; the exit code says its kind.
 pub fn run(
     campaign: &Path,
     out: &Path,
@@ -47,6 +50,65 @@ pub fn run(
     settings: Settings,
     quiet: bool,
 ) -> Result<Done, Stop> {
+    let diagnosis = one(campaign, out, jobs, settings, quiet)?;
+    output::to_stdout(format!("{}\n", diagnose::verdict(&diagnosis)).as_bytes())?;
+    Ok(Done::Code(diagnosis.decision.kind.exit_code()))
+}
+
+/// One campaign after the other; one that cannot be used is told and does not stop the others.
+pub fn check(folder: &Path, out: &Path, as_json: bool) -> Result<Done, Stop> {
+    let mut told = Vec::new();
+    let mut done = Done::Fine;
+    for campaign in campaigns(folder)? {
+        let name = campaign.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        eprintln!("{name}");
+        match one(&campaign, &out.join(&name), 0, Settings::default(), true) {
+            Ok(diagnosis) => {
+                if !as_json {
+                    output::to_stdout(format!("{}\n", diagnose::verdict(&diagnosis)).as_bytes())?;
+                }
+                told.push(json!({"campaign": name, "decision": json::decision(&diagnosis)}));
+            }
+            Err(Stop::Fault(fault)) => {
+                eprintln!("{fault}");
+                told.push(json!({"campaign": name, "fault": fault.to_string()}));
+                done = Done::Code(2);
+            }
+            Err(stop) => return Err(stop),
+        }
+    }
+    let labels = folder.join("labels.json");
+    let cases = labels.exists().then(|| cases(out, &labels)).transpose()?;
+    match cases {
+        _ if as_json => {
+            let score = cases.map(|cases| figures(&cases));
+            output::json_to_stdout(&json!({"campaigns": told, "score": score}))?;
+        }
+        Some(cases) => score::tell(&cases)?,
+        None => {}
+    }
+    Ok(done)
+}
+
+/// Folders and zips of campaigns in a folder, by name.
+fn campaigns(folder: &Path) -> Result<Vec<PathBuf>, Fault> {
+    let entries = std::fs::read_dir(folder).map_err(|e| Fault::file(folder, &e))?;
+    let mut campaigns: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    campaigns.retain(|path| {
+        path.join("campaign.toml").exists() || path.extension().is_some_and(|e| e == "zip")
+    });
+    campaigns.sort();
+    Ok(campaigns)
+}
+
+/// Diagnoses one campaign and leaves `diagnosis.json` and `report.html` in `out`.
+fn one(
+    campaign: &Path,
+    out: &Path,
+    jobs: usize,
+    settings: Settings,
+    quiet: bool,
+) -> Result<Diagnosis, Stop> {
     let began = Instant::now();
     let shown = !quiet && std::io::stderr().is_terminal();
     let progress = |share: f64, what: &str| {
@@ -67,35 +129,9 @@ pub fn run(
     for problem in diagnose::flags(&diagnosis) {
         eprintln!("note: {problem}");
     }
-    let document = json::document(&diagnosis);
-    let text = serde_json::to_string_pretty(&document).unwrap_or_default();
+    let text = serde_json::to_string_pretty(&json::document(&diagnosis)).unwrap_or_default();
     output::to(Some(&out.join("diagnosis.json")), text.as_bytes())?;
     let page = pool.install(|| report::page(&diagnosis));
     output::to(Some(&out.join("report.html")), page.as_bytes())?;
-    output::to_stdout(format!("{}\n", diagnose::verdict(&diagnosis)).as_bytes())?;
-    Ok(Done::Code(diagnosis.decision.kind.exit_code()))
-}
-
-/// One campaign after the other; one that cannot be used is told and does not stop the others.
-pub fn check(folder: &Path, out: &Path) -> Result<(), Stop> {
-    let entries = std::fs::read_dir(folder).map_err(|e| Fault::file(folder, &e))?;
-    let mut campaigns: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-    campaigns.retain(|path| {
-        path.join("campaign.toml").exists() || path.extension().is_some_and(|e| e == "zip")
-    });
-    campaigns.sort();
-    for campaign in &campaigns {
-        let name = campaign.file_stem().unwrap_or_default();
-        eprintln!("{}", name.to_string_lossy());
-        match run(campaign, &out.join(name), 0, Settings::default(), true) {
-            Err(Stop::Fault(fault)) => eprintln!("{fault}"),
-            Err(stop) => return Err(stop),
-            Ok(_) => {}
-        }
-    }
-    let labels = folder.join("labels.json");
-    if labels.exists() {
-        score::tell(out, &labels, None, false)?;
-    }
-    Ok(())
+    Ok(diagnosis)
 }

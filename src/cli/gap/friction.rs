@@ -7,7 +7,7 @@ use crate::gap::{friction_fit, friction_record, friction_told};
 
 /// Every record on its own; one that cannot be used is told and does not stop the others.
 pub fn run(records: &[PathBuf], json: bool) -> Result<Done, Stop> {
-    let (mut text, mut all, mut failed) = (String::new(), Vec::new(), None);
+    let (mut text, mut all, mut done) = (String::new(), Vec::new(), Done::Fine);
     for path in records {
         match friction_record::read(path) {
             Ok(record) => {
@@ -17,16 +17,14 @@ pub fn run(records: &[PathBuf], json: bool) -> Result<Done, Stop> {
             }
             Err(fault) => {
                 eprintln!("{fault}");
-                failed = Some(fault);
+                done = Done::Code(2);
             }
         }
     }
     if json {
-        text = serde_json::to_string_pretty(&all).unwrap_or_default() + "\n";
+        output::json_to_stdout(&all.into())?;
+    } else {
+        output::to_stdout(text.as_bytes())?;
     }
-    output::to_stdout(text.as_bytes())?;
-    match failed {
-        Some(_) => Ok(Done::Code(2)),
-        None => Ok(Done::Fine),
-    }
+    Ok(done)
 }

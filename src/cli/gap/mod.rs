@@ -91,6 +91,9 @@ enum Command {
         /// Folder for the answers
         #[arg(long, short, default_value = "out/gap")]
         out: PathBuf,
+        /// All decisions and figures as JSON
+        #[arg(long)]
+        json: bool,
     },
     /// Make campaigns of the own simulator whose effect is known
     MakeSuite {
@@ -196,9 +199,9 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
             eprintln!("{count} runs written to {}", out.display());
         }
         Command::Export { diagnosis, fmu, model } => export::run(diagnosis, fmu, model.name())?,
-        Command::Check { folder, out } => diagnose::check(folder, out)?,
+        Command::Check { folder, out, json } => return diagnose::check(folder, out, *json),
         Command::Score { answers, labels, held_out, json } => {
-            score::tell(answers, labels, held_out.as_deref(), *json)?;
+            score::run(answers, labels, held_out.as_deref(), *json)?;
         }
     }
     Ok(Done::Fine)

@@ -7,16 +7,28 @@ use crate::error::Fault;
 use crate::gap::score::{self, Case};
 use crate::gap::verify::{self, Closed};
 
-/// Scores the answers; with further runs of the same blocks also what was told of the closed fractions.
-pub fn tell(answers: &Path, labels: &Path, further: Option<&Path>, json: bool) -> Result<(), Stop> {
+/// Scores the answers; with `further` runs of the same blocks also what was told of the closed fractions.
+pub fn run(answers: &Path, labels: &Path, further: Option<&Path>, json: bool) -> Result<(), Stop> {
     let cases = score::cases(answers, labels)?;
-    let figures = serde_json::to_string_pretty(&score::figures(&cases)).unwrap_or_default();
-    let table = if json { String::new() } else { score::table(&cases) };
-    output::to_stdout(format!("{table}{figures}\n").as_bytes())?;
-    if let Some(further) = further {
-        output::to_stdout(verify::table(&closed(answers, &cases, further)?).as_bytes())?;
+    let closed = further.map(|further| closed(answers, &cases, further)).transpose()?;
+    if json {
+        let mut figures = score::figures(&cases);
+        if let Some(closed) = closed {
+            figures["further_runs"] = verify::document(&closed);
+        }
+        return output::json_to_stdout(&figures);
     }
-    Ok(())
+    tell(&cases)?;
+    match closed {
+        Some(closed) => output::to_stdout(verify::table(&closed).as_bytes()),
+        None => Ok(()),
+    }
+}
+
+/// The cases for people, and all figures of them.
+pub fn tell(cases: &[Case]) -> Result<(), Stop> {
+    output::to_stdout(score::table(cases).as_bytes())?;
+    output::json_to_stdout(&score::figures(cases))
 }
 
 /// Told and true closed fractions of the named cases of which `further` has runs.
