@@ -21,6 +21,7 @@ pub mod held_out;
 pub mod hypotheses;
 pub mod import;
 pub mod json;
+pub mod noise;
 pub mod packed;
 pub mod pairs;
 pub mod polish;

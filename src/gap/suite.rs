@@ -5,8 +5,8 @@
 //! diagnosed `--without families`, no form in them is known to the diagnosis.
 
 use super::campaign::{self, Plan, Record, CHANNELS};
-use super::fit::Noise;
 use super::json::changes;
+use super::noise::Noise;
 use super::predict;
 use super::problem::Coordinate;
 use super::simulate::{nominal, set, Simulator, DATASHEET, FINE};
