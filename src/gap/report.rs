@@ -48,16 +48,7 @@ fn ladder(d: &Diagnosis, out: &mut String) {
     let rows = [
         ("datasheet", gap.nominal, String::new()),
         ("recalibrated", gap.recalibrated, String::new()),
-        (
-            "with the effect",
-            gap.with_effect,
-            format!(
-                "closes {:.0} % [{:.0}, {:.0}]",
-                100.0 * gap.closed[0],
-                100.0 * gap.closed[1],
-                100.0 * gap.closed[2]
-            ),
-        ),
+        ("with the effect", gap.with_effect, format!("closes {}", gap.closed_in_words())),
         ("floor", 1.0, "noise and error of the method".to_string()),
     ];
     let rows: Vec<(String, f64, String)> = rows
@@ -84,8 +75,7 @@ fn causes(d: &Diagnosis, out: &mut String) {
         .zip(&d.closed)
         .take(12)
         .map(|(w, closed)| {
-            let names = decide::names(&d.bench, &d.fits, &w.cause);
-            let label = if names.is_empty() { "none".to_string() } else { names.join(" + ") };
+            let label = decide::label(&d.bench, &d.fits, &w.cause);
             let closes = closed.map_or(String::new(), |c| format!(", closes {:.0} %", 100.0 * c));
             (label, w.probability, format!("{:.3}{closes}", w.probability))
         })
