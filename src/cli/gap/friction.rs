@@ -3,17 +3,17 @@
 use std::path::PathBuf;
 
 use crate::cli::output::{self, Done, Stop};
-use crate::gap::{friction_fit, friction_record, friction_told};
+use crate::gap::friction::{record, told, verdict};
 
 /// Every record on its own; one that cannot be used is told and does not stop the others.
 pub fn run(records: &[PathBuf], json: bool) -> Result<Done, Stop> {
     let (mut text, mut all, mut done) = (String::new(), Vec::new(), Done::Fine);
     for path in records {
-        match friction_record::read(path) {
+        match record::read(path) {
             Ok(record) => {
-                let verdict = friction_fit::explain(&record);
-                text.push_str(&friction_told::table(&record, &verdict));
-                all.push(friction_told::document(&record, &verdict));
+                let verdict = verdict::explain(&record);
+                text.push_str(&told::table(&record, &verdict));
+                all.push(told::document(&record, &verdict));
             }
             Err(fault) => {
                 eprintln!("{fault}");

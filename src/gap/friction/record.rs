@@ -1,4 +1,4 @@
-//! Friction records without block dynamics: friction against imposed slip, load and time.
+//! Reads a record: friction against imposed slip, load and time.
 //!
 //! Two kinds of file are read. `time_s, displacement_m, friction_coefficient` and, if measured,
 //! `normal_pressure_pa`: a friction coefficient while the sliding speed changes. `time_s, position_m,
@@ -71,12 +71,14 @@ pub fn read(path: &Path) -> Result<FrictionRecord, Fault> {
     Ok(cut(shown, time, value, place, pressure, piston))
 }
 
+/// Names of the columns.
 fn header(path: &Path) -> Result<Vec<String>, Fault> {
     let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
     let first = text.lines().next().unwrap_or("").trim_start_matches('\u{feff}');
     Ok(first.split(',').map(|h| h.trim().to_string()).collect())
 }
 
+/// Tells all columns from which nothing can be concluded.
 fn check(file: &str, time: &[f64], value: &[f64], place: &[f64]) -> Result<(), Fault> {
     let mut problems = Vec::new();
     if time.len() < FEWEST {
@@ -126,6 +128,7 @@ fn thin(column: &[f64], every: usize) -> Vec<f64> {
     column.chunks_exact(every).map(|c| c.iter().sum::<f64>() / every as f64).collect()
 }
 
+/// The rows that slide, with what the laws ask of them.
 fn cut(
     file: String,
     time: Vec<f64>,
@@ -189,7 +192,7 @@ fn cut(
     record
 }
 
-/// Rows at which the direction changes.
+/// Rows at which the direction changes, at speeds above `least` \[m/s\].
 fn reversals(velocity: &[f64], least: f64) -> Vec<usize> {
     let mut out = Vec::new();
     let mut sign = 0.0;
