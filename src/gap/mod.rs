@@ -20,7 +20,6 @@ pub mod import;
 pub mod json;
 pub mod noise;
 pub mod packed;
-pub mod pairs;
 pub mod polish;
 pub mod predict;
 pub mod problem;
