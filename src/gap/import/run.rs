@@ -16,9 +16,13 @@ const DECIMALS: usize = 12;
 
 /// A channel on its way.
 struct Taken {
+    /// Index in [`CHANNELS`].
     channel: usize,
+    /// Name of the column.
     from: String,
+    /// SI units per count.
     scale: f64,
+    /// Time of the logger that becomes 0 \[s\].
     shift: f64,
     signal: Signal,
 }
@@ -45,14 +49,7 @@ pub(super) fn one_run(
             Err(mut wrong) => problems.append(&mut wrong),
         }
     }
-    // One file's wrong time column is one problem, however many channels use it.
-    let mut told: Vec<Problem> = Vec::new();
-    problems.retain(|p| {
-        !told.contains(p) && {
-            told.push(p.clone());
-            true
-        }
-    });
+    each_once(&mut problems);
     let spans: Vec<(usize, usize)> = taken
         .iter()
         .filter_map(|t| {
@@ -131,6 +128,17 @@ fn start(plan: &Plan, run: &RunSource, table: &Table) -> Result<f64, Vec<Problem
             "a column that crosses start.above when the road starts",
         )]),
     }
+}
+
+/// One file's wrong time column is one problem, however many channels use it.
+fn each_once(problems: &mut Vec<Problem>) {
+    let mut told: Vec<Problem> = Vec::new();
+    for problem in problems.drain(..) {
+        if !told.contains(&problem) {
+            told.push(problem);
+        }
+    }
+    *problems = told;
 }
 
 /// A run that cannot be taken for what stands in `column` of `file`.
