@@ -140,7 +140,8 @@ pub fn parameters(d: &Diagnosis, cause: &Cause) -> Vec<Json> {
         .collect()
 }
 
-fn unit(name: &str) -> &'static str {
+/// SI unit of a parameter.
+pub(super) fn unit(name: &str) -> &'static str {
     match table::find(name).map(|spec| spec.kind) {
         Some(Kind::Real { unit, .. }) => unit,
         _ => "1",

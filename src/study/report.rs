@@ -101,9 +101,8 @@ pub fn html(studies: &[Study], compound: &str) -> String {
             escape(&study.notes)
         ));
         if !study.verdicts.is_empty() {
-            let mut table = String::from(
-                "<table><tr><th>statement of the paper</th><th>holds</th><th>number</th></tr>\n",
-            );
+            let mut table = String::from("<table>");
+            table.push_str(&page::columns(&["statement of the paper", "holds", "number"]));
             for v in &study.verdicts {
                 let (class, word) = if v.holds { ("yes", "yes") } else { ("no", "no") };
                 table.push_str(&format!(
@@ -115,7 +114,8 @@ pub fn html(studies: &[Study], compound: &str) -> String {
             out.push_str(&page::wide("Statements", &(table + "</table>")));
         }
         for (name, svg) in &study.pictures {
-            out.push_str(&format!("<figure>{}</figure>\n", page::wide(name, svg)));
+            let picture = page::picture(svg, &format!("{}: {}", study.title, name));
+            out.push_str(&format!("<figure>{}</figure>\n", page::wide(name, &picture)));
         }
         for (name, text) in &study.tables {
             if name.ends_with(".txt") {
@@ -158,16 +158,16 @@ fn readable(cell: &str) -> String {
 
 /// A CSV as an HTML table.
 fn grid(csv: &str) -> String {
-    let row = |line: &str, tag: &str| {
-        let cells: String = line
-            .split(',')
-            .map(|cell| format!("<{tag}>{}</{tag}>", escape(&readable(cell))))
-            .collect();
+    let row = |line: &str| {
+        let cells: String =
+            line.split(',').map(|cell| format!("<td>{}</td>", escape(&readable(cell)))).collect();
         format!("<tr>{cells}</tr>\n")
     };
     let mut lines = csv.lines();
-    let head = lines.next().map_or_else(String::new, |line| row(line, "th"));
-    let body: String = lines.map(|line| row(line, "td")).collect();
+    let head = lines
+        .next()
+        .map_or_else(String::new, |line| page::columns(&line.split(',').collect::<Vec<_>>()));
+    let body: String = lines.map(row).collect();
     format!("<table>{head}{body}</table>")
 }
 
