@@ -106,6 +106,7 @@ pub fn build(options: &Build) -> Result<PathBuf, Fault> {
     Ok(options.out.clone())
 }
 
+/// A library as `--library` names it.
 fn library(text: &str) -> Result<Library, Fault> {
     let Some((platform, file)) = text.split_once('=') else {
         return Err(Fault::one(Problem::new(

@@ -150,6 +150,7 @@ fn write(path: &Path, params: &Params) -> Result<(), Stop> {
     output::to(Some(path), load::to_toml(params).as_bytes())
 }
 
+/// What was typed as a task, or all that is wrong with it.
 fn task(arguments: &Arguments) -> Result<Task, Fault> {
     let mut start = match &arguments.start {
         Some(path) => load::from_toml(&config::read_text(path)?)?,

@@ -70,6 +70,7 @@ fn binary(library: &Library) -> Result<(String, Vec<u8>), Fault> {
     Ok((format!("binaries/{platform}/{MODEL_IDENTIFIER}.{ending}"), bytes))
 }
 
+/// The files as a zip, the same bytes whenever it is made.
 fn zipped(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, Fault> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)

@@ -32,6 +32,7 @@ const LEAST: [f64; 8] = [0.008, 0.008, 0.006, 0.003, 0.02, 0.2, 0.015, 0.008];
 /// same kind.
 const SAFETY: f64 = 1.5;
 
+/// Place of an aspect in the tables.
 fn place(aspect: Aspect) -> usize {
     Aspect::ALL.iter().position(|a| *a == aspect).unwrap_or(0)
 }

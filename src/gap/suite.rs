@@ -84,6 +84,7 @@ pub fn make(template: Option<&Path>, out: &Path, count: usize, seed: u64) -> Res
     std::fs::write(&target, text).map_err(|e| Fault::file(&target, &e))
 }
 
+/// One campaign with its label: block, parameters and cause drawn from `seed` and `number`.
 fn one(
     template: &Plan,
     text: &str,

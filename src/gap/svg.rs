@@ -5,6 +5,7 @@ use crate::page::escape;
 /// A curve: x, y, and its class (0 measured, 1 recalibrated, 2 with the effect).
 pub type Line<'a> = (&'a [f64], &'a [f64], usize);
 
+/// Room beside the axes for their labels \[px\].
 const LEFT: f64 = 54.0;
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 20.0;

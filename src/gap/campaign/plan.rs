@@ -66,9 +66,9 @@ pub struct Rig {
 /// A parameter of the datasheet.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 pub struct Datum {
-    /// Median.
+    /// Median, in the unit of its name.
     pub value: f64,
-    /// Relative standard deviation, log-normal.
+    /// Relative standard deviation, log-normal \[-\].
     pub relative_std: f64,
 }
 

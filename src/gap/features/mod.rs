@@ -82,7 +82,7 @@ impl Key {
 pub struct Feature {
     /// What it belongs to.
     pub key: Key,
-    /// Value.
+    /// Value, in the unit of its channel and aspect; so are the three below.
     pub value: f64,
     /// Standard deviation from the noise of the channel.
     pub noise: f64,

@@ -141,12 +141,7 @@ fn cut(
     let [time, value, place] = [&time, &value, &place].map(|c| thin(c, every));
     let pressure = pressure.map(|p| thin(&p, every));
     let count = time.len();
-    let velocity: Vec<f64> = (0..count)
-        .map(|i| {
-            let (a, b) = (i.saturating_sub(SPEED_REACH), (i + SPEED_REACH).min(count - 1));
-            (place[b] - place[a]) / (time[b] - time[a]).max(1e-12)
-        })
-        .collect();
+    let velocity = velocity(&time, &place);
     let mut sizes: Vec<f64> = velocity.iter().map(|v| v.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let typical = sizes[count / 2].max(1e-15);
@@ -190,6 +185,17 @@ fn cut(
         }
     }
     record
+}
+
+/// Slope of the place over a few samples each way \[m/s\].
+fn velocity(time: &[f64], place: &[f64]) -> Vec<f64> {
+    let last = time.len().saturating_sub(1);
+    (0..time.len())
+        .map(|i| {
+            let (a, b) = (i.saturating_sub(SPEED_REACH), (i + SPEED_REACH).min(last));
+            (place[b] - place[a]) / (time[b] - time[a]).max(1e-12)
+        })
+        .collect()
 }
 
 /// Rows at which the direction changes, at speeds above `least` \[m/s\].

@@ -73,7 +73,7 @@ pub struct Plan {
     pub campaign: Toml,
     /// How the CSV files are written.
     pub dialect: Dialect,
-    /// Samples per second of the campaign.
+    /// Samples per second of the campaign \[Hz\].
     pub rate: f64,
     /// The time column of channels without their own.
     pub time: TimeColumn,

@@ -32,7 +32,7 @@ pub struct Choice {
 pub struct Coordinate {
     /// Dotted name of the parameter.
     pub name: &'static str,
-    /// Centre of the prior.
+    /// Centre of the prior, in the parameter's unit.
     pub centre: f64,
     /// Width of the prior.
     pub spread: Spread,
