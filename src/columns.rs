@@ -91,9 +91,6 @@ fn listed(names: &[&str]) -> String {
 fn fault(path: &Path, error: &csv::Error) -> Fault {
     match error.kind() {
         csv::ErrorKind::Io(io) => Fault::file(path, io),
-        _ => Fault::File {
-            path: path.display().to_string(),
-            reason: format!("{error}; save it as CSV in UTF-8"),
-        },
+        _ => Fault::unusable(path, format!("{error}; save it as CSV in UTF-8")),
     }
 }

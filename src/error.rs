@@ -90,11 +90,17 @@ impl Fault {
         let remedy = match error.kind() {
             io::ErrorKind::NotFound => "; look at its name, and at the folder that you are in",
             io::ErrorKind::IsADirectory => "; name a file in it",
+            io::ErrorKind::NotADirectory => "; name a folder",
             io::ErrorKind::PermissionDenied => "; ask for the right, or choose another place",
             io::ErrorKind::InvalidData => "; save it as text in UTF-8",
             _ => "",
         };
-        Self::File { path: path.display().to_string(), reason: format!("{error}{remedy}") }
+        Self::unusable(path, format!("{error}{remedy}"))
+    }
+
+    /// A file, or what stands for one (`threads`, `standard output`), that is there and cannot be used.
+    pub fn unusable(path: impl AsRef<Path>, reason: impl fmt::Display) -> Self {
+        Self::File { path: path.as_ref().display().to_string(), reason: reason.to_string() }
     }
 }
 

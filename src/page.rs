@@ -52,7 +52,43 @@ pub fn wide(name: &str, inner: &str) -> String {
     )
 }
 
+/// The first row of a table.
+pub fn columns(names: &[&str]) -> String {
+    let cells: String =
+        names.iter().map(|name| format!("<th scope=\"col\">{}</th>", escape(name))).collect();
+    format!("<tr>{cells}</tr>\n")
+}
+
+/// A picture with what a screen reader says of it.
+pub fn picture(svg: &str, name: &str) -> String {
+    svg.replacen("<svg ", &format!("<svg role=\"img\" aria-label=\"{}\" ", escape(name)), 1)
+}
+
 /// Text as HTML.
 pub fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_names_its_language_follows_the_dark_and_loads_nothing() {
+        let page = head("Gap & more") + TAIL;
+        for part in
+            ["<html lang=\"en\">", "<title>Gap &amp; more</title>", "prefers-color-scheme:dark"]
+        {
+            assert!(page.contains(part), "{part}");
+        }
+        for part in ["http", "url(", "src=", "@import"] {
+            assert!(!page.contains(part), "{part}");
+        }
+    }
+
+    #[test]
+    fn a_picture_is_named_for_screen_readers() {
+        let told = picture("<svg width=\"1\"><path/></svg>", "a < b");
+        assert_eq!(told, "<svg role=\"img\" aria-label=\"a &lt; b\" width=\"1\"><path/></svg>");
+    }
 }

@@ -23,7 +23,7 @@ pub fn pool(jobs: usize) -> Result<ThreadPool, Fault> {
             }
         })
         .build()
-        .map_err(|e| Fault::File { path: "threads".to_string(), reason: e.to_string() })
+        .map_err(|e| Fault::unusable("threads", e))
 }
 
 #[cfg(test)]

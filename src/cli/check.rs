@@ -73,6 +73,7 @@ fn check_campaign(place: &Path) -> Result<(), Fault> {
     }
 }
 
+/// What kind of file a TOML file is, and what is wrong with it.
 fn check_toml(file: &Path) -> Result<(&'static str, Result<(), Fault>), Fault> {
     let text = config::read_text(file)?;
     let document = text.parse::<toml::Table>().unwrap_or_default();
@@ -91,6 +92,7 @@ fn check_sweep(file: &Path) -> Result<(), Fault> {
     (0..plan.points.len()).try_for_each(|point| plan.config(point).map(|_| ()))
 }
 
+/// The problems for people.
 fn plain(file: &Path, kind: &str, problems: &[Problem]) -> String {
     let file = file.display();
     match problems.len() {
@@ -103,6 +105,7 @@ fn plain(file: &Path, kind: &str, problems: &[Problem]) -> String {
     }
 }
 
+/// The problems for programs.
 fn json(kind: &str, problems: &[Problem]) -> String {
     let list: Vec<_> = problems
         .iter()

@@ -33,9 +33,13 @@ enum Nodes {
 
 /// Writes fields where they are asked for.
 pub struct Sink {
+    /// The file and its name.
     out: Option<(Box<dyn Write>, String)>,
+    /// Instants that are still to come \[s\].
     times: Vec<f64>,
+    /// All rows?
     every: bool,
+    /// Half of the distance of the rows \[s\], and a little.
     half_step: f64,
     nodes: Nodes,
 }

@@ -106,6 +106,7 @@ pub fn build(options: &Build) -> Result<PathBuf, Fault> {
     Ok(options.out.clone())
 }
 
+/// A library as `--library` names it.
 fn library(text: &str) -> Result<Library, Fault> {
     let Some((platform, file)) = text.split_once('=') else {
         return Err(Fault::one(Problem::new(
@@ -190,8 +191,8 @@ fn csv(variables: &[Variable]) -> Result<String, Fault> {
         "range",
         "meaning",
     ];
-    let failed = |reason: String| Fault::File { path: "standard output".into(), reason };
-    writer.write_record(header).map_err(|e| failed(e.to_string()))?;
+    let failed = |e: csv::Error| Fault::unusable("standard output", e);
+    writer.write_record(header).map_err(failed)?;
     for (reference, variable) in variables.iter().enumerate() {
         let record = [
             variable.name.clone(),
@@ -204,9 +205,9 @@ fn csv(variables: &[Variable]) -> Result<String, Fault> {
             documentation::range(variable),
             variable.doc.to_string(),
         ];
-        writer.write_record(record).map_err(|e| failed(e.to_string()))?;
+        writer.write_record(record).map_err(failed)?;
     }
-    let bytes = writer.into_inner().map_err(|e| failed(e.to_string()))?;
+    let bytes = writer.into_inner().map_err(|e| Fault::unusable("standard output", e))?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 

@@ -7,6 +7,7 @@ use super::study::progress;
 use crate::block::Reductions;
 use crate::error::Fault;
 use crate::params::{load, Params};
+use crate::scenario::config;
 use crate::study::identify::objective::Fineness;
 use crate::study::identify::residual::{self, Explained, Question};
 use crate::study::identify::run::{identify, Progress, Task};
@@ -149,15 +150,10 @@ fn write(path: &Path, params: &Params) -> Result<(), Stop> {
     output::to(Some(path), load::to_toml(params).as_bytes())
 }
 
+/// What was typed as a task, or all that is wrong with it.
 fn task(arguments: &Arguments) -> Result<Task, Fault> {
     let mut start = match &arguments.start {
-        Some(path) => {
-            let text = std::fs::read_to_string(path).map_err(|e| Fault::File {
-                path: path.display().to_string(),
-                reason: e.to_string(),
-            })?;
-            load::from_toml(&text)?
-        }
+        Some(path) => load::from_toml(&config::read_text(path)?)?,
         None => start(),
     };
     let mut problems = Vec::new();

@@ -83,6 +83,11 @@ pub fn to_stdout(bytes: &[u8]) -> Result<(), Stop> {
     out.write_all(bytes).and_then(|()| out.flush()).map_err(|e| write_failed("standard output", &e))
 }
 
+/// Writes a document to the standard output, indented as people read it.
+pub fn json_to_stdout(document: &serde_json::Value) -> Result<(), Stop> {
+    to_stdout(format!("{document:#}\n").as_bytes())
+}
+
 /// Writes data to a file if one is named, or else to the standard output.
 pub fn to(path: Option<&Path>, bytes: &[u8]) -> Result<(), Stop> {
     let mut out = writer(path)?;

@@ -61,7 +61,7 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
         written.map_err(|stop| {
             stopped = Some(stop);
             // Only ends the run: `stopped` says why.
-            Fault::File { path: String::new(), reason: String::new() }
+            Fault::unusable("", "stopped")
         })
     });
     progress.finish_and_clear();
@@ -159,8 +159,6 @@ impl Sink {
 fn failed(target: &str, error: csv::Error) -> Stop {
     match error.into_kind() {
         csv::ErrorKind::Io(error) => output::write_failed(target, &error),
-        other => {
-            Stop::Fault(Fault::File { path: target.to_string(), reason: format!("{other:?}") })
-        }
+        other => Stop::Fault(Fault::unusable(target, format!("{other:?}"))),
     }
 }

@@ -48,6 +48,9 @@ pub struct Arguments {
     /// Threads; all cores if not given
     #[arg(long)]
     threads: Option<usize>,
+    /// Verdicts, notes and names of the files as JSON on the standard output
+    #[arg(long)]
+    json: bool,
 }
 
 /// Runs it.
@@ -71,11 +74,17 @@ pub fn study(arguments: &Arguments) -> Result<Done, Stop> {
     bar.finish_and_clear();
     for study in &studies {
         write(study, &arguments.out)?;
+        if !arguments.json {
+            tell(study);
+        }
     }
     if arguments.study == "all" {
         let page = html(&studies, &load::to_toml(&params));
         output::to(Some(&arguments.out.join("index.html")), page.as_bytes())?;
         eprintln!("{}", arguments.out.join("index.html").display());
+    }
+    if arguments.json {
+        output::json_to_stdout(&studies.iter().map(Study::document).collect())?;
     }
     Ok(Done::Fine)
 }
@@ -90,11 +99,16 @@ pub(super) fn progress() -> ProgressBar {
     bar
 }
 
-/// Writes tables and pictures, tells notes and verdicts.
+/// Writes tables and pictures.
 fn write(study: &Study, out: &Path) -> Result<(), Stop> {
     for (name, text) in study.tables.iter().chain(&study.pictures) {
         output::to(Some(&out.join(name)), text.as_bytes())?;
     }
+    Ok(())
+}
+
+/// Tells tables made for people, notes and verdicts.
+fn tell(study: &Study) {
     eprintln!("{}: {}", study.name, study.title);
     for (_, text) in study.tables.iter().filter(|(name, _)| name.ends_with(".txt")) {
         eprint!("{text}");
@@ -103,7 +117,6 @@ fn write(study: &Study, out: &Path) -> Result<(), Stop> {
     for verdict in &study.verdicts {
         eprintln!("  {}", verdict.line());
     }
-    Ok(())
 }
 
 /// The compound of the file, or the one identified from the paper.

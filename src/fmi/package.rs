@@ -70,16 +70,14 @@ fn binary(library: &Library) -> Result<(String, Vec<u8>), Fault> {
     Ok((format!("binaries/{platform}/{MODEL_IDENTIFIER}.{ending}"), bytes))
 }
 
+/// The files as a zip, the same bytes whenever it is made.
 fn zipped(files: &[(String, Vec<u8>)]) -> Result<Vec<u8>, Fault> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::default())
         .unix_permissions(0o644);
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
-    let failed = |e: &dyn std::fmt::Display| Fault::File {
-        path: format!("{MODEL_IDENTIFIER}.fmu"),
-        reason: e.to_string(),
-    };
+    let failed = |e: &dyn std::fmt::Display| Fault::unusable(format!("{MODEL_IDENTIFIER}.fmu"), e);
     for (path, bytes) in files {
         zip.start_file(path.as_str(), options).map_err(|e| failed(&e))?;
         zip.write_all(bytes).map_err(|e| failed(&e))?;
@@ -133,6 +131,5 @@ pub fn problems(path: &Path) -> Result<Vec<Problem>, Fault> {
 }
 
 fn fault(path: &Path, error: &dyn std::fmt::Display) -> Fault {
-    let reason = format!("{error}; name an FMU: `make fmu` builds one");
-    Fault::File { path: path.display().to_string(), reason }
+    Fault::unusable(path, format!("{error}; name an FMU: `make fmu` builds one"))
 }

@@ -138,6 +138,14 @@ pub fn names(bench: &Bench, fits: &Fits, cause: &Cause) -> Vec<String> {
     }
 }
 
+/// The same as people read it: `adhesion + worn_edge`, or `none`.
+pub fn label(bench: &Bench, fits: &Fits, cause: &Cause) -> String {
+    match names(bench, fits, cause) {
+        names if names.is_empty() => "none".to_string(),
+        names => names.join(" + "),
+    }
+}
+
 /// The fit of a cause; the base model where there is none.
 pub fn fit_of<'a>(fits: &'a Fits, cause: &Cause) -> &'a Hypothesis {
     match cause {

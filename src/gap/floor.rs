@@ -1,7 +1,7 @@
 //! How far a good model may be off: noise, what its mesh and steps cost, and a floor under both.
 
 use super::campaign::CHANNEL_COUNT;
-use super::features::{Aspect, Feature, Key};
+use super::features::{Aspect, Feature};
 use std::collections::BTreeMap;
 
 /// Error of a good model before anything is measured, relative to the size of the quantity, per
@@ -32,6 +32,7 @@ const LEAST: [f64; 8] = [0.008, 0.008, 0.006, 0.003, 0.02, 0.2, 0.015, 0.008];
 /// same kind.
 const SAFETY: f64 = 1.5;
 
+/// Place of an aspect in the tables.
 fn place(aspect: Aspect) -> usize {
     Aspect::ALL.iter().position(|a| *a == aspect).unwrap_or(0)
 }
@@ -45,10 +46,9 @@ pub fn uncertainty(feature: &Feature) -> f64 {
 /// Uncertainties of the features of a run from the differences that mesh and step make: half of
 /// a feature's own, half of its neighbours'.
 pub fn measured(features: &[Feature], errors: &[f64]) -> Vec<f64> {
-    let cell = |k: &Key| (k.channel, k.aspect, k.part);
     let mut cells: BTreeMap<_, (f64, f64)> = BTreeMap::new();
     for (feature, error) in features.iter().zip(errors) {
-        let sum = cells.entry(cell(&feature.key)).or_default();
+        let sum = cells.entry(feature.key.cell()).or_default();
         sum.0 += error * error;
         sum.1 += 1.0;
     }
@@ -56,7 +56,7 @@ pub fn measured(features: &[Feature], errors: &[f64]) -> Vec<f64> {
         .iter()
         .zip(errors)
         .map(|(feature, error)| {
-            let (sum, count) = cells[&cell(&feature.key)];
+            let (sum, count) = cells[&feature.key.cell()];
             let mesh = SAFETY * (0.5 * error * error + 0.5 * sum / count).sqrt();
             let least = LEAST[place(feature.key.aspect)] * feature.size;
             feature.noise.hypot(least).hypot(mesh).max(1e-15)
@@ -67,6 +67,7 @@ pub fn measured(features: &[Feature], errors: &[f64]) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gap::features::Key;
 
     #[test]
     fn a_measured_error_of_the_mesh_is_shared_with_the_neighbours() {

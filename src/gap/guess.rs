@@ -1,8 +1,9 @@
 //! Where fits begin: from the datasheet, for the base model and for every effect alike.
 
 use super::campaign::RunKind;
-use super::fit::{approach, evaluate, Effort, Fit, Noise};
+use super::fit::{approach, evaluate, Effort, Fit};
 use super::hypotheses::{effort, Method, SETTLED};
+use super::noise::Noise;
 use super::problem::{Bench, Choice};
 use super::symmetry::{self, Finding};
 use crate::effects::Module;
@@ -22,9 +23,9 @@ pub type FirstGuess = (Vec<Choice>, Vec<f64>, f64);
 /// Where fits begin: all of them from the datasheet, after the same effort.
 #[derive(Clone, Debug)]
 pub struct Guess {
-    /// The base model's parameters.
+    /// The base model's parameters, whitened.
     pub base: Vec<f64>,
-    /// How well they do.
+    /// How well they do: objective over the sum of weights, about 1 at the floor.
     pub level: f64,
     /// Every effect in its best form, its parameters with the base model's before them, and how well they do; none of
     /// effects that the symmetries of the data rule out, and after [`second_guess`] of those that fell behind.

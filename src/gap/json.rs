@@ -22,12 +22,7 @@ pub fn document(d: &Diagnosis) -> Json {
     json!({
         "schema": SCHEMA,
         "campaign": d.campaign.plan.id,
-        "decision": {
-            "kind": d.decision.kind.name(),
-            "effects": d.decision.effects,
-            "module": d.decision.module,
-            "text": diagnose::verdict(d),
-        },
+        "decision": decision(d),
         "hypotheses": hypotheses_json(d),
         "where": d.cells.iter().map(|c| json!({
             "run": c.run, "channel": c.channel, "phase": c.phase, "band_hz": c.band,
@@ -85,6 +80,16 @@ pub fn document(d: &Diagnosis) -> Json {
     })
 }
 
+/// What was decided, and the verdict in words.
+pub fn decision(d: &Diagnosis) -> Json {
+    json!({
+        "kind": d.decision.kind.name(),
+        "effects": d.decision.effects,
+        "module": d.decision.module,
+        "text": diagnose::verdict(d),
+    })
+}
+
 /// Parameters of the model of a cause.
 pub fn params_of(d: &Diagnosis, cause: &Cause) -> Params {
     let hypothesis = decide::fit_of(&d.fits, cause);
@@ -135,7 +140,8 @@ pub fn parameters(d: &Diagnosis, cause: &Cause) -> Vec<Json> {
         .collect()
 }
 
-fn unit(name: &str) -> &'static str {
+/// SI unit of a parameter.
+pub(super) fn unit(name: &str) -> &'static str {
     match table::find(name).map(|spec| spec.kind) {
         Some(Kind::Real { unit, .. }) => unit,
         _ => "1",
@@ -173,8 +179,8 @@ pub fn to_toml(model: &Map<String, Json>) -> String {
 /// # Errors
 /// A file that cannot be read or is no diagnosis.
 pub fn read_model(path: &Path, model: &str) -> Result<Params, Fault> {
-    let fault = |reason: String| Fault::File { path: path.display().to_string(), reason };
-    let text = std::fs::read_to_string(path).map_err(|e| fault(e.to_string()))?;
+    let fault = |reason: String| Fault::unusable(path, reason);
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
     let document: Json = serde_json::from_str(&text).map_err(|e| fault(e.to_string()))?;
     if document["schema"] != SCHEMA {
         return Err(fault(format!("schema is {}, not {SCHEMA}", document["schema"])));

@@ -30,8 +30,9 @@ impl Source {
     /// A zip that cannot be read.
     pub fn open(path: &Path) -> Result<Self, Fault> {
         if path.is_file() {
-            let bytes = std::fs::read(path).map_err(|e| fault(path, e))?;
-            return Ok(Self::Packed(unpack(&bytes).map_err(|reason| fault(path, reason))?));
+            let bytes = std::fs::read(path).map_err(|e| Fault::file(path, &e))?;
+            let files = unpack(&bytes).map_err(|reason| Fault::unusable(path, reason))?;
+            return Ok(Self::Packed(files));
         }
         Ok(Self::Folder(path.to_path_buf()))
     }
@@ -50,10 +51,6 @@ impl Source {
     }
 }
 
-fn fault(path: &Path, reason: impl ToString) -> Fault {
-    Fault::File { path: path.display().to_string(), reason: reason.to_string() }
-}
-
 /// Packs the files `names` of a campaign's folder.
 ///
 /// # Errors
@@ -65,19 +62,20 @@ pub fn pack(folder: &Path, names: &[String]) -> Result<Vec<u8>, Fault> {
         .last_modified_time(zip::DateTime::default());
     for name in names {
         let path = folder.join(name);
-        let text = std::fs::read_to_string(&path).map_err(|e| fault(&path, e))?;
+        let text = std::fs::read_to_string(&path).map_err(|e| Fault::file(&path, &e))?;
         let (name, text) = match name.strip_suffix(".csv") {
             Some(stem) => {
-                let columns = to_columns(&text)
-                    .ok_or_else(|| fault(&path, "holds cells that are no plain numbers"))?;
+                let columns = to_columns(&text).ok_or_else(|| {
+                    Fault::unusable(&path, "holds cells that are no plain numbers")
+                })?;
                 (format!("{stem}{COLUMNS}"), columns)
             }
             None => (name.clone(), text),
         };
-        zip.start_file(name, options).map_err(|e| fault(&path, e))?;
-        zip.write_all(text.as_bytes()).map_err(|e| fault(&path, e))?;
+        zip.start_file(name, options).map_err(|e| Fault::unusable(&path, e))?;
+        zip.write_all(text.as_bytes()).map_err(|e| Fault::file(&path, &e))?;
     }
-    Ok(zip.finish().map_err(|e| fault(folder, e))?.into_inner())
+    Ok(zip.finish().map_err(|e| Fault::unusable(folder, e))?.into_inner())
 }
 
 fn unpack(bytes: &[u8]) -> Result<BTreeMap<String, Vec<u8>>, String> {

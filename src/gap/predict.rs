@@ -2,7 +2,7 @@
 
 use super::campaign::{self, Plan, Record, RunSpec, CHANNELS};
 use super::json;
-use super::simulate::{road_speed, Simulator};
+use super::simulate::{mount, road_speed, Simulator};
 use crate::error::Fault;
 use std::io::Write;
 use std::path::Path;
@@ -14,19 +14,12 @@ use std::path::Path;
 pub fn predict(diagnosis: &Path, plan: &Path, model: &str, out: &Path) -> Result<usize, Fault> {
     let mut params = json::read_model(diagnosis, model)?;
     let plan = campaign::read_plan(plan)?;
-    params.block.length = plan.block.length_m;
-    params.block.height = plan.block.height_m;
-    params.block.width = plan.block.width_m;
-    params.carriage.mass = plan.rig.load_carriage_mass_kg;
-    params.carriage.damping = plan.rig.load_carriage_damping_n_s_m;
+    mount(&mut params, &plan);
     let simulator = Simulator::new(&plan)?;
     for spec in &plan.runs {
         let record = simulator.run(&params, spec, spec.duration_s)?;
         let target = out.join(&spec.file);
-        write(&target, &plan, spec, &record).map_err(|e| Fault::File {
-            path: target.display().to_string(),
-            reason: e.to_string(),
-        })?;
+        write(&target, &plan, spec, &record).map_err(|e| Fault::file(&target, &e))?;
     }
     Ok(plan.runs.len())
 }

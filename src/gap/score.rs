@@ -12,7 +12,7 @@ pub struct Case {
     pub id: String,
     /// True effects; empty: none.
     pub truth: Vec<String>,
-    /// Rough severity.
+    /// Rough severity: 1 is typical of the effect's prior.
     pub severity: f64,
     /// Kind of the decision.
     pub kind: String,
@@ -22,9 +22,9 @@ pub struct Case {
     pub on_truth: f64,
     /// Most probable cause and its probability.
     pub top: (Vec<String>, f64),
-    /// Closed fraction told.
+    /// Closed fraction that was told \[-\].
     pub closed: f64,
-    /// Seconds it took.
+    /// Wall-clock time \[s\].
     pub seconds: f64,
 }
 
@@ -59,9 +59,8 @@ fn strings(value: &Json) -> Vec<String> {
 }
 
 fn read(path: &Path) -> Result<Json, Fault> {
-    let fault = |reason: String| Fault::File { path: path.display().to_string(), reason };
-    let text = std::fs::read_to_string(path).map_err(|e| fault(e.to_string()))?;
-    serde_json::from_str(&text).map_err(|e| fault(e.to_string()))
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
+    serde_json::from_str(&text).map_err(|e| Fault::unusable(path, e))
 }
 
 /// Where the answer to a campaign is: ID/diagnosis.json, or ID.json.
@@ -91,6 +90,7 @@ pub fn cases(answers: &Path, labels: &Path) -> Result<Vec<Case>, Fault> {
     Ok(out)
 }
 
+/// An answer beside its label.
 fn case(id: &str, label: &Json, answer: &Json) -> Case {
     let mut case = Case {
         id: id.to_string(),
@@ -182,10 +182,12 @@ fn bins(cases: &[Case]) -> Vec<(usize, f64, f64)> {
     bins
 }
 
+/// Expected calibration error: mean distance of probability and share of right answers over the bins.
 fn ece(cases: &[Case]) -> f64 {
     bins(cases).iter().map(|(_, p, hits)| (p - hits).abs()).sum::<f64>() / cases.len().max(1) as f64
 }
 
+/// The bins that have cases.
 fn reliability(cases: &[Case]) -> Vec<Json> {
     bins(cases)
         .iter()
@@ -197,6 +199,7 @@ fn reliability(cases: &[Case]) -> Vec<Json> {
         .collect()
 }
 
+/// Most probable cause by truth.
 fn confusion(cases: &[Case]) -> Json {
     let mut out: BTreeMap<String, BTreeMap<String, usize>> = BTreeMap::new();
     let name = |names: &[String]| {

@@ -28,8 +28,11 @@ pub const DATASHEET: [(&str, &str); 12] = [
 /// How finely the block is cut: elements along and up, highest mode \[Hz\], tolerance of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fineness {
+    /// Elements along the tread face and over the height.
     elements: (usize, usize),
+    /// Fixed-interface modes up to this frequency are kept \[Hz\].
     bound: f64,
+    /// Error of one internal step relative to the motion's own scale \[-\].
     tolerance: f64,
 }
 
@@ -47,14 +50,19 @@ pub fn set(params: &mut Params, name: &str, value: f64) -> bool {
     table::find(name).is_some_and(|spec| (spec.set)(params, &Value::Real(value)))
 }
 
-/// The base model at the datasheet's values.
-pub fn nominal(plan: &Plan) -> Params {
-    let mut params = Params::default();
+/// Puts the block of `plan` on its rig: sizes and carriage.
+pub(super) fn mount(params: &mut Params, plan: &Plan) {
     params.block.length = plan.block.length_m;
     params.block.height = plan.block.height_m;
     params.block.width = plan.block.width_m;
     params.carriage.mass = plan.rig.load_carriage_mass_kg;
     params.carriage.damping = plan.rig.load_carriage_damping_n_s_m;
+}
+
+/// The base model at the datasheet's values.
+pub fn nominal(plan: &Plan) -> Params {
+    let mut params = Params::default();
+    mount(&mut params, plan);
     params.wear.coefficient = 0.0;
     cut(&mut params, FIT);
     for (key, name) in DATASHEET {
@@ -184,6 +192,7 @@ fn rows(duration: f64, step: f64) -> usize {
 /// Collects what the rig's channels would show.
 struct Sampler {
     record: Record,
+    /// Height of the block \[m\], from which the approach counts.
     height: f64,
 }
 

@@ -5,8 +5,8 @@
 //! diagnosed `--without families`, no form in them is known to the diagnosis.
 
 use super::campaign::{self, Plan, Record, CHANNELS};
-use super::fit::Noise;
 use super::json::changes;
+use super::noise::Noise;
 use super::predict;
 use super::problem::Coordinate;
 use super::simulate::{nominal, set, Simulator, DATASHEET, FINE};
@@ -77,7 +77,7 @@ fn truth(number: usize) -> Truth {
 pub fn make(template: Option<&Path>, out: &Path, count: usize, seed: u64) -> Result<(), Fault> {
     let (plan, text) = match template {
         Some(path) => {
-            let text = std::fs::read_to_string(path).map_err(|e| file_fault(path, &e))?;
+            let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
             (campaign::read_plan(path)?, text)
         }
         None => {
@@ -89,13 +89,10 @@ pub fn make(template: Option<&Path>, out: &Path, count: usize, seed: u64) -> Res
     let labels: Map<String, Json> = labels?.into_iter().collect();
     let target = out.join("labels.json");
     let text = serde_json::to_string_pretty(&Json::Object(labels)).unwrap_or_default();
-    std::fs::write(&target, text).map_err(|e| file_fault(&target, &e))
+    std::fs::write(&target, text).map_err(|e| Fault::file(&target, &e))
 }
 
-fn file_fault(path: &Path, error: &std::io::Error) -> Fault {
-    Fault::File { path: path.display().to_string(), reason: error.to_string() }
-}
-
+/// One campaign with its label: block, parameters and cause drawn from `seed` and `number`.
 fn one(
     template: &Plan,
     text: &str,
@@ -119,10 +116,10 @@ fn one(
         distort(truth, severity, &mut record);
         blur(&plan, &mut record, &mut noise);
         let target = folder.join(&spec.file);
-        predict::write(&target, &plan, spec, &record).map_err(|e| file_fault(&target, &e))?;
+        predict::write(&target, &plan, spec, &record).map_err(|e| Fault::file(&target, &e))?;
     }
     let target = folder.join("campaign.toml");
-    std::fs::write(&target, titled(text, &id, &plan)).map_err(|e| file_fault(&target, &e))?;
+    std::fs::write(&target, titled(text, &id, &plan)).map_err(|e| Fault::file(&target, &e))?;
     Ok((id, label))
 }
 

@@ -5,6 +5,7 @@ use crate::page::escape;
 /// A curve: x, y, and its class (0 measured, 1 recalibrated, 2 with the effect).
 pub type Line<'a> = (&'a [f64], &'a [f64], usize);
 
+/// Room beside the axes for their labels \[px\].
 const LEFT: f64 = 54.0;
 const RIGHT: f64 = 10.0;
 const TOP: f64 = 20.0;
@@ -50,8 +51,9 @@ pub fn lines(title: &str, labels: [&str; 2], of: &[Line<'_>], [width, height]: [
     let x_axis = Axis::over(of.iter().flat_map(|l| l.0.iter().copied()), (LEFT, right));
     let y_axis = Axis::over(of.iter().flat_map(|l| l.1.iter().copied()), (bottom, TOP));
     let title = escape(title);
+    let told = format!("{title}: {} over {}", escape(labels[1]), escape(labels[0]));
     let mut out = format!(
-        "<svg viewBox=\"0 0 {width} {height}\" width=\"{width}\" role=\"img\" aria-label=\"{title}\">\
+        "<svg viewBox=\"0 0 {width} {height}\" width=\"{width}\" role=\"img\" aria-label=\"{told}\">\
          <text x=\"{LEFT}\" y=\"13\" class=\"t\">{title}</text>"
     );
     let (ticks, decimals) = x_axis.ticks();
@@ -124,6 +126,12 @@ pub fn bars(of: &[(String, f64, String)], longest: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_picture_says_what_is_drawn_over_what() {
+        let svg = lines("spectrum", ["f in kHz", "level in dB"], &[], [100.0, 100.0]);
+        assert!(svg.contains("role=\"img\" aria-label=\"spectrum: level in dB over f in kHz\""));
+    }
 
     #[test]
     fn ticks_are_round_and_lie_within_the_range() {

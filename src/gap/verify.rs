@@ -6,7 +6,7 @@ use super::held_out;
 use super::json;
 use super::problem::{Bench, Look};
 use crate::error::Fault;
-use serde_json::Value as Json;
+use serde_json::{json, Value as Json};
 use std::path::Path;
 
 /// Told and true closed fraction of a campaign.
@@ -29,8 +29,7 @@ pub struct Closed {
 /// # Errors
 /// Files that cannot be read, and what stops the block.
 pub fn closed(id: &str, answer: &Path, campaign: &Path) -> Result<Closed, Fault> {
-    let text = std::fs::read_to_string(answer)
-        .map_err(|e| Fault::File { path: answer.display().to_string(), reason: e.to_string() })?;
+    let text = std::fs::read_to_string(answer).map_err(|e| Fault::file(answer, &e))?;
     let document: Json = serde_json::from_str(&text).unwrap_or_default();
     let campaign = Campaign::load(campaign)?;
     let mut bench = Bench::new(&campaign, crate::effects::fit_specs(), Look::Whole)?;
@@ -53,6 +52,14 @@ pub fn closed(id: &str, answer: &Path, campaign: &Path) -> Result<Closed, Fault>
     })
 }
 
+/// Median of |told - on further runs|, `None` without campaigns, and how many fractions lie inside their interval.
+fn errors(all: &[Closed]) -> (Option<f64>, usize) {
+    let mut errors: Vec<f64> = all.iter().map(|c| (c.told - c.actual).abs()).collect();
+    errors.sort_by(f64::total_cmp);
+    let inside = |c: &&Closed| c.interval[0] <= c.actual && c.actual <= c.interval[1];
+    (errors.get(errors.len() / 2).copied(), all.iter().filter(inside).count())
+}
+
 /// A table for people, and the median error.
 pub fn table(all: &[Closed]) -> String {
     let mut out = String::from(
@@ -65,15 +72,55 @@ pub fn table(all: &[Closed]) -> String {
             c.id, c.told, c.interval[0], c.interval[1], c.actual
         ));
     }
-    let mut errors: Vec<f64> = all.iter().map(|c| (c.told - c.actual).abs()).collect();
-    errors.sort_by(f64::total_cmp);
-    if let Some(median) = errors.get(errors.len() / 2) {
-        let inside =
-            all.iter().filter(|c| c.interval[0] <= c.actual && c.actual <= c.interval[1]).count();
+    if let (Some(median), inside) = errors(all) {
         out.push_str(&format!(
             "median |told - on further runs| {median:.3}; inside the interval {inside} of {}\n",
             all.len()
         ));
     }
     out
+}
+
+/// The same for programs.
+pub fn document(all: &[Closed]) -> Json {
+    let (median, inside) = errors(all);
+    let campaigns: Vec<Json> = all
+        .iter()
+        .map(|c| {
+            let [nominal, recalibrated, with_effect] = c.gaps;
+            json!({
+                "campaign": c.id,
+                "gap": {
+                    "nominal": nominal, "recalibrated": recalibrated, "with_effect": with_effect,
+                },
+                "closed_fraction": {
+                    "told": c.told, "lo": c.interval[0], "hi": c.interval[1],
+                    "on_further_runs": c.actual,
+                },
+            })
+        })
+        .collect();
+    json!({"campaigns": campaigns, "median_error": median, "inside_interval": inside})
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn table_and_json_tell_the_same_error() {
+        let closed = |told: f64, actual: f64| Closed {
+            id: "a".into(),
+            gaps: [9.0, 3.0, 1.5],
+            actual,
+            told,
+            interval: [told - 0.2, told + 0.2],
+        };
+        // Errors 0.1, 0.3 and 0.15: the median is 0.15, and 0.3 is outside of ±0.2.
+        let all = [closed(0.8, 0.9), closed(0.8, 0.5), closed(0.5, 0.65)];
+        let document = document(&all);
+        assert!((document["median_error"].as_f64().unwrap() - 0.15).abs() < 1e-12);
+        assert_eq!(document["inside_interval"], 2);
+        assert!(table(&all).contains("0.150; inside the interval 2 of 3"));
+    }
 }

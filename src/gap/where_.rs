@@ -90,6 +90,8 @@ fn erfc(x: f64) -> f64 {
     }
 }
 
+/// Probability up to which cells are discoveries of which at most [`FALSE_DISCOVERIES`] are false (Benjamini and
+/// Hochberg, J. R. Stat. Soc. B 57, 1995, 289); below 0 where there are none.
 fn discovery_limit(chances: &[f64]) -> f64 {
     let mut sorted = chances.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -4,6 +4,7 @@
 
 pub mod check;
 pub mod load;
+mod spec;
 pub mod table;
 
 pub use table::{Kind, ParamSpec, Value, Variability};

@@ -82,6 +82,7 @@ type Cycle = Vec<[f64; 2]>;
 
 /// Limit cycles of the nodes up the run-in edge, with their heights \[m\], and their swings \[m\].
 fn edge_cycles(run: &Run) -> Result<(Vec<(f64, Cycle)>, Vec<f64>), Fault> {
+    /// Distance of rows \[s\].
     const FINE_STEP: f64 = 5e-6;
     let reductions = Reductions::default();
     let nodes = run_in_nodes(&*reductions.of(&run.params)?);

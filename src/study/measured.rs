@@ -93,8 +93,7 @@ fn data<const N: usize>(
         return Ok((points("example", example, line)?, MADE_UP.to_string()));
     };
     let name = path.display().to_string();
-    let text = std::fs::read_to_string(path)
-        .map_err(|e| Fault::File { path: name.clone(), reason: e.to_string() })?;
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
     Ok((points(&name, &text, line)?, name))
 }
 

@@ -91,7 +91,7 @@ pub fn svg(panels: &[Panel], columns: usize) -> Result<String, Fault> {
         });
         drawn
             .and_then(|()| root.present().map_err(|e| e.to_string()))
-            .map_err(|reason| Fault::File { path: "plot".to_string(), reason })?;
+            .map_err(|reason| Fault::unusable("plot", reason))?;
     }
     Ok(text)
 }

@@ -1,6 +1,7 @@
 //! What a study leaves: files, pictures, and a verdict per statement of the paper.
 
 use crate::page::{self, escape};
+use serde_json::{json, Value};
 
 /// A statement of the paper and what our model says to it.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +44,27 @@ pub struct Study {
     pub verdicts: Vec<Verdict>,
 }
 
+impl Study {
+    /// What the study says, for programs; tables and pictures by the names of their files.
+    pub fn document(&self) -> Value {
+        let names = |files: &[(String, String)]| -> Vec<String> {
+            files.iter().map(|(name, _)| name.clone()).collect()
+        };
+        let verdicts: Vec<Value> = self
+            .verdicts
+            .iter()
+            .map(|v| json!({"statement": v.statement, "holds": v.holds, "number": v.number}))
+            .collect();
+        json!({
+            "study": self.name,
+            "title": self.title,
+            "notes": self.notes,
+            "files": names(&self.tables).into_iter().chain(names(&self.pictures)).collect::<Vec<_>>(),
+            "verdicts": verdicts,
+        })
+    }
+}
+
 /// CSV from a header and rows of numbers.
 pub fn csv(header: &str, rows: impl IntoIterator<Item = Vec<f64>>) -> String {
     let mut out = format!("{header}\n");
@@ -79,9 +101,8 @@ pub fn html(studies: &[Study], compound: &str) -> String {
             escape(&study.notes)
         ));
         if !study.verdicts.is_empty() {
-            let mut table = String::from(
-                "<table><tr><th>statement of the paper</th><th>holds</th><th>number</th></tr>\n",
-            );
+            let mut table = String::from("<table>");
+            table.push_str(&page::columns(&["statement of the paper", "holds", "number"]));
             for v in &study.verdicts {
                 let (class, word) = if v.holds { ("yes", "yes") } else { ("no", "no") };
                 table.push_str(&format!(
@@ -93,7 +114,8 @@ pub fn html(studies: &[Study], compound: &str) -> String {
             out.push_str(&page::wide("Statements", &(table + "</table>")));
         }
         for (name, svg) in &study.pictures {
-            out.push_str(&format!("<figure>{}</figure>\n", page::wide(name, svg)));
+            let picture = page::picture(svg, &format!("{}: {}", study.title, name));
+            out.push_str(&format!("<figure>{}</figure>\n", page::wide(name, &picture)));
         }
         for (name, text) in &study.tables {
             if name.ends_with(".txt") {
@@ -136,16 +158,16 @@ fn readable(cell: &str) -> String {
 
 /// A CSV as an HTML table.
 fn grid(csv: &str) -> String {
-    let row = |line: &str, tag: &str| {
-        let cells: String = line
-            .split(',')
-            .map(|cell| format!("<{tag}>{}</{tag}>", escape(&readable(cell))))
-            .collect();
+    let row = |line: &str| {
+        let cells: String =
+            line.split(',').map(|cell| format!("<td>{}</td>", escape(&readable(cell)))).collect();
         format!("<tr>{cells}</tr>\n")
     };
     let mut lines = csv.lines();
-    let head = lines.next().map_or_else(String::new, |line| row(line, "th"));
-    let body: String = lines.map(|line| row(line, "td")).collect();
+    let head = lines
+        .next()
+        .map_or_else(String::new, |line| page::columns(&line.split(',').collect::<Vec<_>>()));
+    let body: String = lines.map(row).collect();
     format!("<table>{head}{body}</table>")
 }
 

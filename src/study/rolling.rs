@@ -18,20 +18,30 @@ const STEP: f64 = 2e-5;
 
 /// One row of the passage.
 struct Row {
+    /// Since the block began to come in \[s\].
     time: f64,
+    /// Place of the clamped face's middle from that of the patch \[m\].
     contact_x: f64,
+    /// Of the run-in edge, in x and z \[m\].
     displacement: [f64; 2],
+    /// Of the run-in edge, in x and z \[m/s\].
     velocity: [f64; 2],
+    /// Share of the touching stations that stick \[-\].
     stick: f64,
+    /// Share of the face that touches \[-\].
     area: f64,
+    /// Nodes of the deformed block, see [`shape`] \[m\].
     shape: Vec<[f64; 2]>,
 }
 
 /// The passage of the block through the patch.
 struct Passage {
     rows: Vec<Row>,
+    /// Length of the patch \[m\].
     length: f64,
+    /// Elements along the block.
     along: usize,
+    /// Elements over its height.
     up: usize,
 }
 

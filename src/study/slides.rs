@@ -79,5 +79,5 @@ pub fn sticking(outputs: &Outputs, bound: f64) -> f64 {
 
 /// Ends a run that has shown what it can; never leaves this file.
 fn over() -> Fault {
-    Fault::File { path: String::new(), reason: "seen enough".to_string() }
+    Fault::unusable("", "seen enough")
 }

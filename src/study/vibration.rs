@@ -139,14 +139,40 @@ pub fn fig_6(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         title: "Sliding speed".to_string(),
         runs: run_all(runs.to_vec())?,
     };
+    let time: Vec<f64> = speeds.runs.iter().map(|r| 1e2 * time_stuck(&r.1, &r.2)).collect();
+    let verdicts = speed_verdicts(&speeds, &time);
+    Ok(Study {
+        name: "fig-6",
+        title: "Sliding speed",
+        notes: format!(
+            "A sticking phase: more than half of the contact slides slower than 15 % of the road speed at some time \
+             of the settled part. It does so for {:.0}, {:.0}, {:.0} and {:.0} % of the time at 100, 200, 300 and \
+             400 mm/s. The identified damping is {:.2} of the critical one of the free block's first mode: such a \
+             block does not swing through, it is let go and caught again, also near its critical speed.",
+            time[1],
+            time[2],
+            time[3],
+            time[4],
+            critical(compound.rubber.stiffness_damping)
+        ),
+        tables: vec![speeds.summary(), speeds.traces()],
+        pictures: vec![(
+            "fig-6.svg".to_string(),
+            svg(&[speeds.displacements(), speeds.limit_cycles()], 2)?,
+        )],
+        verdicts,
+    })
+}
+
+/// Where the paper's block oscillates and sticks; `time` is the share of the time in which runs do \[%\].
+fn speed_verdicts(speeds: &Variation, time: &[f64]) -> Vec<Verdict> {
     let hz = speeds.frequencies();
     let stick: Vec<f64> = speeds.runs.iter().map(|r| most_stuck(&r.1, &r.2)).collect();
-    let time: Vec<f64> = speeds.runs.iter().map(|r| 1e2 * time_stuck(&r.1, &r.2)).collect();
     let told = |i: usize| match hz[i] {
         hz if hz > 0.0 => format!("{hz:.0} Hz"),
         _ => "silent".to_string(),
     };
-    let verdicts = vec![
+    vec![
         Verdict::new("no oscillation at 50 mm/s", hz[0] == 0.0, told(0)),
         Verdict::new(
             "oscillation from 100 to 400 mm/s",
@@ -169,28 +195,7 @@ pub fn fig_6(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
             stick[4] < 0.5,
             format!("up to {:.0} % stuck, {:.0} % of the time", 1e2 * stick[4], time[4]),
         ),
-    ];
-    Ok(Study {
-        name: "fig-6",
-        title: "Sliding speed",
-        notes: format!(
-            "A sticking phase: more than half of the contact slides slower than 15 % of the road speed at some time \
-             of the settled part. It does so for {:.0}, {:.0}, {:.0} and {:.0} % of the time at 100, 200, 300 and \
-             400 mm/s. The identified damping is {:.2} of the critical one of the free block's first mode: such a \
-             block does not swing through, it is let go and caught again, also near its critical speed.",
-            time[1],
-            time[2],
-            time[3],
-            time[4],
-            critical(compound.rubber.stiffness_damping)
-        ),
-        tables: vec![speeds.summary(), speeds.traces()],
-        pictures: vec![(
-            "fig-6.svg".to_string(),
-            svg(&[speeds.displacements(), speeds.limit_cycles()], 2)?,
-        )],
-        verdicts,
-    })
+    ]
 }
 
 /// Largest share of the contact that sticks at one time of the settled part.
@@ -254,28 +259,7 @@ pub fn fig_7(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         low == 0.0,
         if low == 0.0 { "silent".to_string() } else { format!("{low:.0} Hz") },
     ));
-    let (x, f) = (geometry.amplitudes(), geometry.frequencies());
-    verdicts.push(Verdict::new(
-        "amplitude rises with height",
-        x[0] > x[1] && x[2] > x[3],
-        format!("{} (l 15), {} (l 45) from 6 to 10 mm", change(x[1], x[0]), change(x[3], x[2])),
-    ));
-    verdicts.push(Verdict::new(
-        "amplitude falls with length",
-        x[0] > x[2] && x[1] > x[3],
-        format!("{} (h 10), {} (h 6) from 15 to 45 mm", change(x[0], x[2]), change(x[1], x[3])),
-    ));
-    let mut order: Vec<usize> = (0..4).collect();
-    order.sort_by(|a, b| x[*a].total_cmp(&x[*b]));
-    verdicts.push(Verdict::new(
-        "the frequency falls where the amplitude rises",
-        order.windows(2).all(|w| f[w[0]] > f[w[1]]),
-        order
-            .iter()
-            .map(|i| format!("{:.0} um {:.0} Hz", 1e6 * x[*i], f[*i]))
-            .collect::<Vec<_>>()
-            .join(", "),
-    ));
+    verdicts.extend(geometry_verdicts(&geometry));
     Ok(Study {
         name: "fig-7",
         title: "Mean pressure and block geometry",
@@ -287,4 +271,31 @@ pub fn fig_7(compound: &Params, fineness: &Fineness) -> Result<Study, Fault> {
         )],
         verdicts,
     })
+}
+
+/// How amplitude and frequency go with height and length: h 10 l 15, h 6 l 15, h 10 l 45, h 6 l 45.
+fn geometry_verdicts(geometry: &Variation) -> [Verdict; 3] {
+    let (x, f) = (geometry.amplitudes(), geometry.frequencies());
+    let height = Verdict::new(
+        "amplitude rises with height",
+        x[0] > x[1] && x[2] > x[3],
+        format!("{} (l 15), {} (l 45) from 6 to 10 mm", change(x[1], x[0]), change(x[3], x[2])),
+    );
+    let length = Verdict::new(
+        "amplitude falls with length",
+        x[0] > x[2] && x[1] > x[3],
+        format!("{} (h 10), {} (h 6) from 15 to 45 mm", change(x[0], x[2]), change(x[1], x[3])),
+    );
+    let mut order: Vec<usize> = (0..4).collect();
+    order.sort_by(|a, b| x[*a].total_cmp(&x[*b]));
+    let inverse = Verdict::new(
+        "the frequency falls where the amplitude rises",
+        order.windows(2).all(|w| f[w[0]] > f[w[1]]),
+        order
+            .iter()
+            .map(|i| format!("{:.0} um {:.0} Hz", 1e6 * x[*i], f[*i]))
+            .collect::<Vec<_>>()
+            .join(", "),
+    );
+    [height, length, inverse]
 }

@@ -33,12 +33,17 @@ const SEVERAL: f64 = 0.03;
 
 /// A run as it is watched.
 pub struct Watch {
+    /// Speed of the road \[m/s\].
     speed: f64,
+    /// How long a settled vibration is looked at \[s\].
     seen: f64,
+    /// Times of the rows \[s\].
     time: Vec<f64>,
+    /// Velocity of the run-in edge \[m/s\].
     velocity: Vec<f64>,
     swings: Swings,
     short: Swings,
+    /// When the vibration has settled \[s\].
     settled: Option<f64>,
     died: bool,
 }
@@ -146,8 +151,11 @@ fn growth(swings: &[f64], road_speed: f64) -> f64 {
 
 /// Peak-to-peak velocity window by window.
 struct Swings {
+    /// Rows of a window.
     length: usize,
+    /// Velocities of the window that is not full \[m/s\].
     current: Vec<f64>,
+    /// Peak to peak of the full ones \[m/s\].
     swings: Vec<f64>,
 }
 

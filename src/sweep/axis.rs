@@ -24,9 +24,9 @@ pub enum Levels {
     Listed(Vec<Value>),
     /// A range of numbers.
     Range {
-        /// First value.
+        /// First value, in the parameter's unit.
         from: f64,
-        /// Last value.
+        /// Last value, in the parameter's unit.
         to: f64,
         /// Levels of a grid or one-at-a-time plan.
         count: usize,

@@ -28,10 +28,7 @@ use crate::scenario::{config::Config, Inputs};
 /// # Errors
 /// Reading or writing that fails; a line that is no question.
 pub fn serve(plan: &Plan, questions: impl BufRead, mut answers: impl Write) -> Result<(), Fault> {
-    let pipe = |e: std::io::Error| Fault::File {
-        path: "standard input or output".to_string(),
-        reason: e.to_string(),
-    };
+    let pipe = |e: std::io::Error| Fault::unusable("standard input or output", e);
     let greeting = json!({
         "points": plan.points.len(),
         "header": header(plan),
@@ -134,12 +131,14 @@ fn changed(params: &Params) -> Map<String, Value> {
         .collect()
 }
 
+/// Numbers by their bytes, little endian: no digit is lost between two languages.
 fn to_hex(values: impl Iterator<Item = f64>) -> String {
     const DIGITS: &[u8; 16] = b"0123456789abcdef";
     let digits = |byte: u8| [byte >> 4, byte & 15].map(|d| char::from(DIGITS[usize::from(d)]));
     values.flat_map(f64::to_le_bytes).flat_map(digits).collect()
 }
 
+/// The numbers of [`to_hex`].
 fn from_hex(text: &str) -> Option<Vec<f64>> {
     let digit = |c: &u8| char::from(*c).to_digit(16).map(|d| d as u8);
     let pairs = text.as_bytes().chunks(2);

@@ -75,14 +75,14 @@ fn columns(plan: &Plan, records: &[Record]) -> Vec<Column> {
 pub fn csv(plan: &Plan, records: &[Record]) -> Result<Vec<u8>, Fault> {
     let columns = columns(plan, records);
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let failed = |reason: String| Fault::File { path: "sweep.csv".to_string(), reason };
+    let failed = |e: csv::Error| Fault::unusable("sweep.csv", e);
     let header = columns.iter().map(|c| c.name.as_str());
-    writer.write_record(header).map_err(|e| failed(e.to_string()))?;
+    writer.write_record(header).map_err(failed)?;
     for row in 0..records.len() {
         let cells = columns.iter().map(|c| c.cells.text(row));
-        writer.write_record(cells).map_err(|e| failed(e.to_string()))?;
+        writer.write_record(cells).map_err(failed)?;
     }
-    writer.into_inner().map_err(|e| failed(e.to_string()))
+    writer.into_inner().map_err(|e| Fault::unusable("sweep.csv", e))
 }
 
 /// Points of the plan as CSV: number and values.
@@ -91,19 +91,19 @@ pub fn csv(plan: &Plan, records: &[Record]) -> Result<Vec<u8>, Fault> {
 /// [`Fault::File`].
 pub fn points_csv(plan: &Plan) -> Result<Vec<u8>, Fault> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let failed = |reason: String| Fault::File { path: "points".to_string(), reason };
+    let failed = |e: csv::Error| Fault::unusable("points", e);
     let names = plan.axes.iter().map(|axis| axis.name.as_str());
     let header: Vec<&str> = std::iter::once("point").chain(names).collect();
-    writer.write_record(header).map_err(|e| failed(e.to_string()))?;
+    writer.write_record(header).map_err(failed)?;
     for (index, values) in plan.points.iter().enumerate() {
         let cells = values.iter().map(|value| match value {
             Value::String(text) => text.clone(),
             other => other.to_string(),
         });
         let row: Vec<String> = std::iter::once(index.to_string()).chain(cells).collect();
-        writer.write_record(row).map_err(|e| failed(e.to_string()))?;
+        writer.write_record(row).map_err(failed)?;
     }
-    writer.into_inner().map_err(|e| failed(e.to_string()))
+    writer.into_inner().map_err(|e| Fault::unusable("points", e))
 }
 
 impl Cells {
@@ -162,8 +162,7 @@ fn there<T>(cells: &[Option<T>]) -> Vec<i16> {
 /// [`Fault::File`].
 pub fn parquet(plan: &Plan, records: &[Record], path: &Path) -> Result<(), Fault> {
     let columns = columns(plan, records);
-    write_parquet(plan, &columns, path)
-        .map_err(|e| Fault::File { path: path.display().to_string(), reason: e.to_string() })
+    write_parquet(plan, &columns, path).map_err(|e| Fault::unusable(path, e))
 }
 
 fn write_parquet(plan: &Plan, columns: &[Column], path: &Path) -> Result<(), ParquetError> {

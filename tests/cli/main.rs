@@ -106,6 +106,44 @@ fn what_is_printed_for_people_comes_as_json_too() {
 }
 
 #[test]
+fn a_gap_check_comes_as_json_though_a_campaign_cannot_be_used() {
+    let folder = Folder::new("gap-check");
+    for name in ["campaigns/broken", "out"] {
+        std::fs::create_dir_all(folder.0.join(name)).unwrap();
+    }
+    folder.write("campaigns/broken/campaign.toml", "no campaign");
+    // A committed answer stands for a diagnosis of minutes: its campaign has the label.
+    folder.write(
+        "campaigns/labels.json",
+        r#"{"a-01": {"effects": ["payne_softening"], "severity": 2}}"#,
+    );
+    let answer = project("tests/data/sealed-a-answers/a-01.json");
+    std::fs::copy(answer, folder.0.join("out/a-01.json")).unwrap();
+    let output = folder.tread(&["gap", "check", "campaigns", "--out", "out", "--json"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let told: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(told["campaigns"][0]["campaign"], "broken");
+    assert!(told["campaigns"][0]["fault"].as_str().unwrap().contains("campaign.toml"));
+    let text = folder.fine(&["gap", "score", "out", "campaigns/labels.json", "--json"]);
+    let figures: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(told["score"], figures);
+    assert_eq!(figures["top1_singles"]["hits"], 1);
+}
+
+#[test]
+fn the_verdicts_of_a_study_come_as_json() {
+    let folder = Folder::new("study-json");
+    let text = folder.fine(&["study", "fig-2", "--coarse", "--out", "out", "--json"]);
+    let studies: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(studies[0]["study"], "fig-2");
+    for file in studies[0]["files"].as_array().unwrap() {
+        assert!(folder.0.join("out").join(file.as_str().unwrap()).is_file(), "{file}");
+    }
+    let verdicts = studies[0]["verdicts"].as_array().unwrap();
+    assert!(!verdicts.is_empty() && verdicts.iter().all(|v| v["holds"].is_boolean()));
+}
+
+#[test]
 fn belt_writes_what_roll_reads() {
     let folder = Folder::new("roll");
     folder.fine(&["belt", "--speed", "15", "--slip", "-0.02", "--out", "belt.csv"]);

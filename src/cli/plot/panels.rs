@@ -32,7 +32,7 @@ pub fn draw(run: &Run) -> Result<String, Fault> {
         let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
         panels(&root, run)
             .and_then(|()| root.present().map_err(|e| e.to_string()))
-            .map_err(|reason| Fault::File { path: "plot".to_string(), reason })?;
+            .map_err(|reason| Fault::unusable("plot", reason))?;
     }
     Ok(svg)
 }

@@ -11,7 +11,7 @@ use crate::error::Fault;
 /// # Errors
 /// What the drawing library says.
 pub fn of(svg: &str, width: u32) -> Result<Vec<u8>, Fault> {
-    let failed = |reason: String| Fault::File { path: "PNG".to_string(), reason };
+    let failed = |reason: String| Fault::unusable("PNG", reason);
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(dejavu::sans::regular().to_vec());
     fonts.set_sans_serif_family("DejaVu Sans");

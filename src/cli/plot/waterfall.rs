@@ -19,7 +19,7 @@ pub fn draw(runs: &[(String, Run)], speeds: &[f64]) -> Result<String, Fault> {
         let root = SVGBackend::with_string(&mut svg, (1000, height)).into_drawing_area();
         chart(&root, runs, speeds)
             .and_then(|()| root.present().map_err(|e| e.to_string()))
-            .map_err(|reason| Fault::File { path: "plot".to_string(), reason })?;
+            .map_err(|reason| Fault::unusable("plot", reason))?;
     }
     Ok(svg)
 }

@@ -8,7 +8,7 @@ use crate::gap::campaign::CHANNELS;
 use crate::gap::simulate::DATASHEET;
 
 /// The reader of campaign files: its documented fields are the format.
-const READER: &str = include_str!("../../gap/campaign.rs");
+const READER: &str = include_str!("../../gap/campaign/plan.rs");
 /// The campaign after which `tread gap make-suite` makes its own.
 const EXAMPLE: &str = include_str!("../../gap/campaign_template.toml");
 const SCHEMA: &str = include_str!("../../../docs/diagnosis.schema.json");

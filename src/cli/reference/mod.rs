@@ -37,6 +37,7 @@ pub fn run(arguments: &Arguments, command: clap::Command) -> Result<Done, Stop> 
     Ok(Done::Fine)
 }
 
+/// The help of all commands.
 fn command_line(command: clap::Command) -> String {
     let mut page =
         String::from("# Command line\n\nWhat `tread --help` and the commands' own help say.\n");

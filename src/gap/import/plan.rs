@@ -73,7 +73,7 @@ pub struct Plan {
     pub campaign: Toml,
     /// How the CSV files are written.
     pub dialect: Dialect,
-    /// Samples per second of the campaign.
+    /// Samples per second of the campaign \[Hz\].
     pub rate: f64,
     /// The time column of channels without their own.
     pub time: TimeColumn,
@@ -122,10 +122,8 @@ impl Told {
 /// # Errors
 /// All that is wrong with it.
 pub fn parse(text: &str, shown: &str) -> Result<Plan, Fault> {
-    let mut file: Toml = text.parse().map_err(|e: toml::de::Error| Fault::File {
-        path: shown.to_string(),
-        reason: e.to_string().trim().to_string(),
-    })?;
+    let unread = |e: toml::de::Error| Fault::unusable(shown, e.to_string().trim());
+    let mut file: Toml = text.parse().map_err(unread)?;
     let mut told = Told(Vec::new());
     let format = file.get("format").and_then(Value::as_str).unwrap_or("missing").to_string();
     if format != FORMAT {

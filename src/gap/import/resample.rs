@@ -14,7 +14,9 @@ const LATEST_ROW: usize = 2;
 /// A channel of a logger, its time shifted so that the road starts at 0.
 #[derive(Clone, Debug)]
 pub struct Signal {
+    /// \[s\]
     time: Vec<f64>,
+    /// In the channel's SI unit.
     values: Vec<f64>,
     /// Median of the steps \[s\].
     pub step: f64,
@@ -23,13 +25,13 @@ pub struct Signal {
 /// A channel at the campaign's rows.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampled {
-    /// Values, SI.
+    /// Values in the channel's SI unit.
     pub values: Vec<f64>,
     /// Were samples taken as they are, or were they splined?
     pub copied: bool,
     /// Largest distance of a row from the sample that it holds, or from the next one \[s\].
     pub distance: f64,
-    /// What the rows do not hold of the record, rms over rms of the record about its mean.
+    /// What the rows do not hold of the record, rms over rms of the record about its mean \[-\].
     pub lost: f64,
 }
 

@@ -20,7 +20,7 @@ pub struct Fineness {
     pub up: usize,
     /// Largest internal step \[s\].
     pub max_step: f64,
-    /// Tolerance of the integrator.
+    /// Tolerance of the integrator \[-\], as `solver.tolerance`.
     pub tolerance: f64,
     /// Frequency bound \[Hz\].
     pub bound: f64,

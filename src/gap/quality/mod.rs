@@ -1,19 +1,18 @@
 //! What can be wrong with measured data: told, worked around where that is possible.
 
+mod channel;
+mod time;
+
 use super::campaign::{
     BlockSize, Campaign, Plan, Record, Rig, Run, RunKind, RunSpec, APPROACH, CHANNELS, FRICTION,
     NORMAL, VELOCITY,
 };
 use crate::error::{Fault, Problem};
+use channel::channel_fault;
+use time::check_time;
 
 /// Fewest sliding runs from which anything can be decided.
 const FEWEST_RUNS: usize = 4;
-/// Smallest share of distinct values in a channel that is not held.
-const FEWEST_LEVELS: usize = 3;
-/// Share of samples at the very same extreme value beyond which a channel is clipped.
-const CLIPPED_SHARE: f64 = 0.03;
-/// Share of unusable cells that may be bridged.
-const BRIDGED_SHARE: f64 = 0.02;
 
 /// Problems of the campaign's settings.
 pub fn of_plan(block: &BlockSize, rig: &Rig, runs: &[RunSpec]) -> Vec<Problem> {
@@ -89,122 +88,6 @@ pub fn of_record(
         return Err(tell("channels", "none usable".into(), "force or edge velocity", remedy));
     }
     Ok(())
-}
-
-/// A clock that is off by up to this share is told, and the rows are taken by their number.
-const WRONG_CLOCK: f64 = 0.15;
-
-fn check_time(
-    record: &mut Record,
-    plan: &Plan,
-    spec: &RunSpec,
-    warnings: &mut Vec<Problem>,
-) -> Result<(), Problem> {
-    let tell = |value: String, allowed: &str, remedy: &str| {
-        Err(Problem::new(format!("{}: time_s", spec.file), value, allowed, remedy))
-    };
-    let time = &mut record.time;
-    if time.len() < 50 {
-        return tell(format!("{} rows", time.len()), "50 rows or more", "the run is left out");
-    }
-    if time.iter().any(|t| !t.is_finite()) || time.windows(2).any(|w| w[1] <= w[0]) {
-        let remedy = "the run is left out; sort it, or mend the time column";
-        return tell("not increasing".into(), "finite and increasing", remedy);
-    }
-    let step = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    let expected = 1.0 / plan.sampling_rate;
-    record.clock = step / expected;
-    if (record.clock - 1.0).abs() > 0.005 && (record.clock - 1.0).abs() <= WRONG_CLOCK {
-        let what = "time_s against channels.sampling_rate_hz";
-        if !warnings.iter().any(|w| w.what == what) {
-            warnings.push(Problem::new(
-                what,
-                format!("{step:.7} s per sample ({} and perhaps others)", spec.file),
-                format!("{expected:.7} s"),
-                "rows are taken at the sampling rate, and no effect is named: find out which of the two is right",
-            ));
-        }
-        for (row, t) in time.iter_mut().enumerate() {
-            *t = row as f64 * expected;
-        }
-    } else if (record.clock - 1.0).abs() > WRONG_CLOCK {
-        return tell(
-            format!("{:.6} s per sample", step),
-            &format!("{expected:.6} s, as channels.sampling_rate_hz says"),
-            "the run is left out: rate and time column contradict each other, correct one of them",
-        );
-    }
-    let shift = 2.0 * expected;
-    if time[0].abs() > shift {
-        return tell(
-            format!("starts at {:.6} s", time[0]),
-            "starts at 0 s, when the road starts",
-            "the run is left out; shift the time so that the road starts at 0",
-        );
-    }
-    let end = time[time.len() - 1];
-    if end < 0.6 * spec.duration_s {
-        return tell(
-            format!("ends at {end:.6} s"),
-            &format!("{:.6} s as duration_s says", spec.duration_s),
-            "the run is left out; it is cut off",
-        );
-    }
-    Ok(())
-}
-
-/// What is wrong with a channel: the value found and what would be accepted.
-fn channel_fault(
-    c: usize,
-    values: &mut [f64],
-    spec: &RunSpec,
-    noise: f64,
-) -> Option<(String, &'static str)> {
-    let bad = values.iter().filter(|v| !v.is_finite()).count();
-    if bad as f64 > BRIDGED_SHARE * values.len() as f64 {
-        return Some((format!("{bad} cells are no numbers"), "finite numbers"));
-    }
-    bridge(values);
-    if spec.kind == RunKind::Ringdown && c != VELOCITY {
-        return None;
-    }
-    let (low, high) = extremes(values);
-    let mut levels: Vec<f64> = values.to_vec();
-    levels.sort_by(f64::total_cmp);
-    levels.dedup();
-    if levels.len() <= FEWEST_LEVELS || high - low < 0.5 * noise {
-        return Some((format!("constant at {low}"), "a signal that moves"));
-    }
-    // Noise alone never hits the same extreme often: a clipped channel does.
-    for extreme in [low, high] {
-        let hits = values.iter().filter(|v| **v == extreme).count();
-        if noise > 0.0 && hits as f64 > CLIPPED_SHARE * values.len() as f64 {
-            return Some((
-                format!("{hits} samples at {extreme}"),
-                "a range that the signal fits in",
-            ));
-        }
-    }
-    None
-}
-
-fn extremes(values: &[f64]) -> (f64, f64) {
-    values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)))
-}
-
-/// Replaces single bad cells by their neighbours' mean.
-fn bridge(values: &mut [f64]) {
-    for i in 0..values.len() {
-        if !values[i].is_finite() {
-            let before = values[..i].iter().rev().find(|v| v.is_finite()).copied();
-            let after = values[i + 1..].iter().find(|v| v.is_finite()).copied();
-            values[i] = match (before, after) {
-                (Some(a), Some(b)) => 0.5 * (a + b),
-                (Some(a), None) | (None, Some(a)) => a,
-                (None, None) => 0.0,
-            };
-        }
-    }
 }
 
 /// A normal force far from the dead load, an approach or a velocity far from any sense: wrong unit.

@@ -1,117 +1,30 @@
 //! The fitting problem: whitened parameters in, weighted residuals of the data vector out.
 
-use super::campaign::{Campaign, Plan, RunKind, RunSpec};
-use super::features::{self, Aspect, Feature, Key};
+mod coordinate;
+mod look;
+mod weight;
+
+pub use coordinate::{Choice, Coordinate};
+pub use look::Look;
+pub use weight::{loss, robust_weight};
+
+use super::campaign::{Campaign, Plan, Record, RunSpec};
+use super::features::{self, Feature};
 use super::floor;
-use super::simulate::{nominal, set, Simulator, DATASHEET, FINE};
-use crate::effects::fit::{FitSpec, Spread};
+use super::simulate::{nominal, set, Simulator, FINE};
+use crate::effects::fit::FitSpec;
 use crate::error::Fault;
 use crate::params::Params;
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Datasheet parameters that are recalibrated. Density is left at its value: with one per cent of
-/// spread it does what the modulus does.
-const CALIBRATED: [&str; 9] = [
-    "young_modulus_pa",
-    "stiffness_damping_s",
-    "friction_mu_inf",
-    "friction_mu_drop",
-    "friction_decay_speed_m_s",
-    "friction_smoothing_speed_m_s",
-    "friction_pressure_exponent",
-    "contact_reference_pressure_pa",
-    "contact_depth_m",
-];
-/// Residuals beyond this many standard deviations count ever less: a bifurcation that comes a little
-/// early must not rule out a model that is right everywhere else.
-pub const TAIL: f64 = 4.0;
-/// The free block is asked once, but without any doubt about friction: it counts more.
-const RINGDOWN_WEIGHT: f64 = 3.0;
-/// Three numbers that say as much as a waveform.
-const SNAP_WEIGHT: f64 = 4.0;
 /// Residual of a run that could not be simulated.
 const FAILED: f64 = 30.0;
-
-/// An effect in one of its forms.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Choice {
-    /// Index into `effects::fit_specs()`.
-    pub effect: usize,
-    /// Index of its form.
-    pub form: usize,
-}
-
-/// One whitened parameter: value = centre·exp(spread·x) or centre + spread·x, x ~ N(0, 1).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coordinate {
-    /// Dotted name of the parameter.
-    pub name: &'static str,
-    /// Centre of the prior.
-    pub centre: f64,
-    /// Width of the prior.
-    pub spread: Spread,
-}
-
-impl Coordinate {
-    /// The parameter's value at `x`.
-    pub fn value(&self, x: f64) -> f64 {
-        match self.spread {
-            Spread::Log(s) => self.centre * (s * x).exp(),
-            Spread::Absolute(s) => self.centre + s * x,
-        }
-    }
-
-    /// Standard deviation of the value where x has the standard deviation `sd`.
-    pub fn deviation(&self, x: f64, sd: f64) -> f64 {
-        match self.spread {
-            Spread::Log(s) => (self.value(x) * s * sd).abs(),
-            Spread::Absolute(s) => s * sd,
-        }
-    }
-}
-
-/// How much of every run is compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Look {
-    /// Up to the first snap-out: what follows the parameters without jumps.
-    Start,
-    /// Half way between: an optimum that has found the first snap-outs of fast runs finds the others.
-    Middle,
-    /// Enough to fit: the first snap-outs of all runs.
-    Fit,
-    /// All.
-    Whole,
-}
-
-impl Look {
-    /// Records are compared up to this time \[s\].
-    pub fn horizon(self, run: &RunSpec) -> f64 {
-        let speed = run.road_speed_m_s.abs();
-        match self {
-            Self::Whole => run.duration_s,
-            _ if run.kind == RunKind::Ringdown => run.duration_s,
-            Self::Start => FIRST.max(0.5 * features::TRAVEL / speed.max(1e-3)).min(START),
-            Self::Middle => MIDDLE.max(0.75 * features::TRAVEL / speed.max(1e-3)).min(0.75 * SLOW),
-            Self::Fit => START.max(features::TRAVEL / speed.max(1e-3)).min(SLOW),
-        }
-    }
-}
-
-/// Length of what is looked at first \[s\].
-const FIRST: f64 = 1.3e-3;
-/// Length of what is looked at next \[s\].
-const MIDDLE: f64 = 2.0e-3;
-/// Length of the fitted start of runs \[s\].
-const START: f64 = 2.9e-3;
-/// Longest fitted start, of slow runs \[s\].
-const SLOW: f64 = 5.8e-3;
 
 /// A campaign's data vector with all that is needed to predict it.
 #[derive(Debug)]
 pub struct Bench {
-    /// Settings.
+    /// Settings of the campaign.
     pub plan: Plan,
     /// Runs in the order of the data vector.
     pub runs: Vec<RunSpec>,
@@ -152,16 +65,8 @@ impl Bench {
             .collect();
         let sigma = |f: &Feature| 1.0 / floor::uncertainty(f);
         let inverse = measured.iter().map(|run| run.iter().map(sigma).collect()).collect();
-        let weight = measured.iter().map(|run| weights(run)).collect();
-        let base = CALIBRATED
-            .iter()
-            .filter_map(|key| {
-                let datum = plan.nominal.get(*key).filter(|d| d.relative_std > 0.0)?;
-                let name = DATASHEET.iter().find(|(k, _)| k == key)?.1;
-                let spread = Spread::Log(datum.relative_std);
-                Some(Coordinate { name, centre: datum.value, spread })
-            })
-            .collect();
+        let weight = measured.iter().map(|run| weight::weights(run)).collect();
+        let base = coordinate::of_base(&plan);
         let simulator = Simulator::new(&plan)?;
         let simulations = AtomicUsize::new(0);
         Ok(Self {
@@ -309,11 +214,7 @@ impl Bench {
     ///
     /// # Errors
     /// What stops the block.
-    pub fn simulate(
-        &self,
-        params: &Params,
-        spec: &RunSpec,
-    ) -> Result<super::campaign::Record, Fault> {
+    pub fn simulate(&self, params: &Params, spec: &RunSpec) -> Result<Record, Fault> {
         self.simulations.fetch_add(1, Ordering::Relaxed);
         self.simulator.run(params, spec, spec.duration_s)
     }
@@ -335,29 +236,4 @@ impl Bench {
     pub fn total_weight(&self, of: &[usize]) -> f64 {
         of.iter().flat_map(|r| &self.weight[*r]).sum()
     }
-}
-
-/// Logarithmic loss c² ln(1 + (r/c)²): r² for small residuals.
-pub fn loss(r: f64) -> f64 {
-    TAIL * TAIL * (r / TAIL).powi(2).ln_1p()
-}
-
-/// Derivative of the loss over 2r: the weight of iteratively reweighted least squares.
-pub fn robust_weight(r: f64) -> f64 {
-    1.0 / (1.0 + (r / TAIL).powi(2))
-}
-
-/// n^(−1/2) for each of the n features of a cell: their errors are correlated.
-fn weights(features: &[Feature]) -> Vec<f64> {
-    let cell = |k: &Key| (k.channel, k.aspect, k.part);
-    let mut count = BTreeMap::new();
-    for feature in features {
-        *count.entry(cell(&feature.key)).or_insert(0_usize) += 1;
-    }
-    let voice = |f: &Feature| match f.key.aspect {
-        Aspect::Ringdown => RINGDOWN_WEIGHT,
-        Aspect::Snap if f.key.part == 0 => SNAP_WEIGHT,
-        _ => 1.0,
-    };
-    features.iter().map(|f| voice(f) / (count[&cell(&f.key)] as f64).sqrt()).collect()
 }

@@ -1,4 +1,4 @@
-//! Friction records without block dynamics: friction against imposed slip, load and time.
+//! Reads a record: friction against imposed slip, load and time.
 //!
 //! Two kinds of file are read. `time_s, displacement_m, friction_coefficient` and, if measured,
 //! `normal_pressure_pa`: a friction coefficient while the sliding speed changes. `time_s, position_m,
@@ -71,13 +71,14 @@ pub fn read(path: &Path) -> Result<FrictionRecord, Fault> {
     Ok(cut(shown, time, value, place, pressure, piston))
 }
 
+/// Names of the columns.
 fn header(path: &Path) -> Result<Vec<String>, Fault> {
-    let fault = |reason: String| Fault::File { path: path.display().to_string(), reason };
-    let text = std::fs::read_to_string(path).map_err(|e| fault(e.to_string()))?;
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
     let first = text.lines().next().unwrap_or("").trim_start_matches('\u{feff}');
     Ok(first.split(',').map(|h| h.trim().to_string()).collect())
 }
 
+/// Tells all columns from which nothing can be concluded.
 fn check(file: &str, time: &[f64], value: &[f64], place: &[f64]) -> Result<(), Fault> {
     let mut problems = Vec::new();
     if time.len() < FEWEST {
@@ -127,6 +128,7 @@ fn thin(column: &[f64], every: usize) -> Vec<f64> {
     column.chunks_exact(every).map(|c| c.iter().sum::<f64>() / every as f64).collect()
 }
 
+/// The rows that slide, with what the laws ask of them.
 fn cut(
     file: String,
     time: Vec<f64>,
@@ -139,12 +141,7 @@ fn cut(
     let [time, value, place] = [&time, &value, &place].map(|c| thin(c, every));
     let pressure = pressure.map(|p| thin(&p, every));
     let count = time.len();
-    let velocity: Vec<f64> = (0..count)
-        .map(|i| {
-            let (a, b) = (i.saturating_sub(SPEED_REACH), (i + SPEED_REACH).min(count - 1));
-            (place[b] - place[a]) / (time[b] - time[a]).max(1e-12)
-        })
-        .collect();
+    let velocity = velocity(&time, &place);
     let mut sizes: Vec<f64> = velocity.iter().map(|v| v.abs()).collect();
     sizes.sort_by(f64::total_cmp);
     let typical = sizes[count / 2].max(1e-15);
@@ -190,7 +187,18 @@ fn cut(
     record
 }
 
-/// Rows at which the direction changes.
+/// Slope of the place over a few samples each way \[m/s\].
+fn velocity(time: &[f64], place: &[f64]) -> Vec<f64> {
+    let last = time.len().saturating_sub(1);
+    (0..time.len())
+        .map(|i| {
+            let (a, b) = (i.saturating_sub(SPEED_REACH), (i + SPEED_REACH).min(last));
+            (place[b] - place[a]) / (time[b] - time[a]).max(1e-12)
+        })
+        .collect()
+}
+
+/// Rows at which the direction changes, at speeds above `least` \[m/s\].
 fn reversals(velocity: &[f64], least: f64) -> Vec<usize> {
     let mut out = Vec::new();
     let mut sign = 0.0;

@@ -1,9 +1,10 @@
 //! The laws of a friction record as sums: what each coefficient is multiplied with, sample by sample.
 
-use super::friction_fit::Law;
-use super::friction_record::FrictionRecord;
+use super::law::Law;
+use super::record::FrictionRecord;
 
-/// Names of the coefficients, and their factors sample by sample.
+/// Names of the coefficients, and their factors sample by sample; `memory` \[m or s\] as the law has it, `stretch` \[m\]
+/// of the rig.
 pub(super) fn design(
     record: &FrictionRecord,
     law: Law,
@@ -14,22 +15,6 @@ pub(super) fn design(
     let arrived = arrived(record, stretch);
     let place = mean(&record.place);
     let load = record.pressure.as_ref().map_or(1.0, |p| mean(p));
-    let mut names = vec!["friction"];
-    if record.piston {
-        names.push("area [m²]");
-    }
-    if law != Law::Constant {
-        names.push("change per e-fold of speed");
-    }
-    match law {
-        Law::Constant | Law::Speed => {}
-        Law::RigCompliance => names.push("change at a reversal"),
-        Law::FrictionAgeing => names.push("change where contacts are old"),
-        Law::ThermalFriction => names.push("change when warm"),
-        Law::Adhesion => names.push("change with the load, relative"),
-        Law::Misalignment => names.push("change per metre of the way"),
-        Law::Drift => names.push("change per metre of slip"),
-    }
     let rows = (0..record.value.len())
         .map(|i| {
             let sign = record.direction[i];
@@ -66,10 +51,31 @@ pub(super) fn design(
             row
         })
         .collect();
-    (names, rows)
+    (names(record, law), rows)
 }
 
-/// Share of a change that has arrived after the slip `x`.
+/// Names of the coefficients, in the order of the factors.
+fn names(record: &FrictionRecord, law: Law) -> Vec<&'static str> {
+    let mut names = vec!["friction"];
+    if record.piston {
+        names.push("area [m²]");
+    }
+    if law != Law::Constant {
+        names.push("change per e-fold of speed");
+    }
+    match law {
+        Law::Constant | Law::Speed => {}
+        Law::RigCompliance => names.push("change at a reversal"),
+        Law::FrictionAgeing => names.push("change where contacts are old"),
+        Law::ThermalFriction => names.push("change when warm"),
+        Law::Adhesion => names.push("change with the load, relative"),
+        Law::Misalignment => names.push("change per metre of the way"),
+        Law::Drift => names.push("change per metre of slip"),
+    }
+    names
+}
+
+/// Share of a change that has arrived after the slip `x` \[m\].
 fn arrival(x: f64, stretch: f64) -> f64 {
     if stretch > 0.0 {
         1.0 - (-x / stretch).exp()

@@ -1,7 +1,8 @@
 //! What a friction record says, for people and as JSON.
 
-use super::friction_fit::{Law, Verdict};
-use super::friction_record::FrictionRecord;
+use super::law::Law;
+use super::record::FrictionRecord;
+use super::verdict::Verdict;
 
 /// A record's verdict for people.
 pub fn table(record: &FrictionRecord, verdict: &Verdict) -> String {

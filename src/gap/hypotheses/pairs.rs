@@ -1,9 +1,10 @@
 //! Two effects at once.
 
-use super::fit::{approach, evaluate, to_the_end};
-use super::hypotheses::{full_jacobian, level, ranked, start_effect, Hypothesis, Method, FINE};
-use super::problem::{Bench, Choice};
-use super::symmetry::{self, Finding};
+use super::single::{start_effect, FINE};
+use super::{full_jacobian, level, ranked, Hypothesis, Method};
+use crate::gap::fit::{approach, evaluate, to_the_end};
+use crate::gap::problem::{Bench, Choice};
+use crate::gap::symmetry::{self, Finding};
 
 /// Level of a single effect below which there is nothing left for a second one.
 const LITTLE: f64 = 1.2;
