@@ -18,6 +18,18 @@ pub const PRIOR_NONE: f64 = 2.5;
 pub const PRIOR_UNKNOWN: f64 = -1.0;
 /// Logarithm of the odds of two effects at once before the data.
 pub const PRIOR_PAIR: f64 = -4.0;
+/// Nats per logarithm of what a pair leaves on runs that no fit has seen, over what its first effect alone leaves
+/// there. In `open/` and three own pairs a true second effect takes that by a factor of 1.4 to 4, a false one by 1.1 at
+/// most.
+pub const SECOND_HELD_OUT: f64 = 4.0;
+/// Logarithm of what two single effects leave on runs that no fit has seen, up to which these do not tell them apart.
+pub const ALIKE: f64 = 0.25;
+/// Share of the gap that both then close at least.
+pub const ALIKE_CLOSED: f64 = 0.5;
+/// Nats that the fitted runs then count at most between the two.
+pub const ALIKE_NATS: f64 = 0.5;
+/// Share of the gap below which what is left counts no less.
+pub const LEAST_LEFT: f64 = 0.05;
 /// An unknown cause is taken to leave this share of ln(G²) that the recalibrated model leaves.
 pub const UNKNOWN_LEAVES: f64 = 0.7;
 /// G² up to which a recalibrated model has no gap worth a name.

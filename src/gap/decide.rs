@@ -1,9 +1,9 @@
 //! From fits to probabilities and a decision.
 
 use super::calibration::{
-    BLUR, CLASS_FROM, CLASS_SIZE, CONTRADICTION, GOOD, INADEQUATE, KNOWN_BREAKER, NAME_FROM,
-    NO_GAP, PRIOR_NONE, PRIOR_PAIR, PRIOR_UNKNOWN, SHARPNESS, SURENESS, TEXTURE_ALLOWANCE,
-    UNKNOWN_LEAVES,
+    ALIKE, ALIKE_CLOSED, ALIKE_NATS, BLUR, CLASS_FROM, CLASS_SIZE, CONTRADICTION, GOOD, INADEQUATE,
+    KNOWN_BREAKER, LEAST_LEFT, NAME_FROM, NO_GAP, PRIOR_NONE, PRIOR_PAIR, PRIOR_UNKNOWN,
+    SECOND_HELD_OUT, SHARPNESS, SURENESS, TEXTURE_ALLOWANCE, UNKNOWN_LEAVES,
 };
 use super::hypotheses::{Fits, Hypothesis};
 use super::problem::Bench;
@@ -126,6 +126,62 @@ pub fn weigh(fits: &Fits) -> Vec<Weighed> {
     out
 }
 
+/// The probabilities once more, from the share of the gap that the likeliest causes close on runs that no fit has seen
+/// (`closed`, cause by cause).
+///
+/// A second effect that only follows the fitted runs closes nothing more there than the first one alone; and two effects
+/// that close the same there are told apart by the fitted runs by little, since an effect with more parameters follows
+/// what the fits' mesh does to another.
+pub fn second_look(fits: &Fits, weighed: &[Weighed], closed: &[Option<f64>]) -> Vec<Weighed> {
+    let mut out = weighed.to_vec();
+    for (w, gain) in out.iter_mut().zip(gains(fits, weighed, closed)) {
+        w.probability *= (SURENESS * gain).exp();
+    }
+    if let Some((likelier, other)) = alike(weighed, closed) {
+        let (sum, odds) =
+            (out[likelier].probability + out[other].probability, (SURENESS * ALIKE_NATS).exp());
+        let most = sum * odds / (1.0 + odds);
+        if out[likelier].probability > most {
+            (out[likelier].probability, out[other].probability) = (most, sum - most);
+        }
+    }
+    let total: f64 = out.iter().map(|w| w.probability).sum();
+    out.iter_mut().for_each(|w| w.probability /= total);
+    out.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    out
+}
+
+/// Share of the gap that a cause leaves.
+fn left(closed: f64) -> f64 {
+    (1.0 - closed).max(LEAST_LEFT)
+}
+
+/// Nats of each pair from what it closes beyond its first effect; 0 for other causes.
+fn gains(fits: &Fits, weighed: &[Weighed], closed: &[Option<f64>]) -> Vec<f64> {
+    let of_first = |pair: usize| {
+        let first = fits.pairs[pair].added[0].effect;
+        let is =
+            |c: &Cause| matches!(c, Cause::Single(k) if fits.singles[*k].added[0].effect == first);
+        closed[weighed.iter().position(|w| is(&w.cause))?]
+    };
+    let gain = |(w, both): (&Weighed, &Option<f64>)| match w.cause {
+        Cause::Pair(pair) => Some(SECOND_HELD_OUT * (left(of_first(pair)?) / left((*both)?)).ln()),
+        _ => None,
+    };
+    weighed.iter().zip(closed).map(|case| gain(case).unwrap_or(0.0)).collect()
+}
+
+/// The two likeliest single effects, if unseen runs do not tell them apart.
+fn alike(weighed: &[Weighed], closed: &[Option<f64>]) -> Option<(usize, usize)> {
+    let mut singles = weighed.iter().zip(closed).enumerate().filter_map(|(at, (w, closed))| {
+        matches!(w.cause, Cause::Single(_)).then_some(())?;
+        Some((at, (*closed)?))
+    });
+    let ((first, a), (second, b)) = (singles.next()?, singles.next()?);
+    let same = (left(a) / left(b)).ln().abs() < ALIKE && a.min(b) >= ALIKE_CLOSED;
+    same.then_some((first, second))
+}
+
 /// Names of the effects of a cause.
 pub fn names(bench: &Bench, fits: &Fits, cause: &Cause) -> Vec<String> {
     let of =
@@ -222,7 +278,7 @@ pub fn modules(bench: &Bench, fits: &Fits) -> Vec<(String, f64)> {
 mod tests {
     use super::*;
     use crate::gap::fit::Fit;
-    use crate::gap::problem::Look;
+    use crate::gap::problem::{Choice, Look};
 
     fn at(level: f64) -> Hypothesis {
         let fit = Fit {
@@ -261,6 +317,62 @@ mod tests {
     #[test]
     fn a_gap_that_nothing_closes_is_unknown() {
         assert_eq!(weigh(&fits(8.0, &[7.5, 7.0, 7.9]))[0].cause, Cause::Unknown);
+    }
+
+    /// An effect of the list.
+    fn choice(effect: usize) -> Choice {
+        Choice { effect, form: 0 }
+    }
+
+    #[test]
+    fn a_pair_gains_by_what_it_closes_beyond_its_first_effect_on_unseen_runs() {
+        // Left 0.25 instead of 0.75: 4 ln 3 nats, by the common factor of all log odds.
+        let mut fits = fits(8.0, &[1.4, 6.0]);
+        fits.singles[0].added = vec![choice(0)];
+        fits.singles[1].added = vec![choice(1)];
+        let mut pair = at(0.9);
+        pair.added = vec![choice(0), choice(1)];
+        fits.pairs = vec![pair];
+        let weighed = weigh(&fits);
+        let share = |of: &[Weighed], cause: &Cause| {
+            of.iter().find(|w| w.cause == *cause).map(|w| w.probability).unwrap()
+        };
+        let odds = |of: &[Weighed]| share(of, &Cause::Pair(0)) / share(of, &Cause::Single(0));
+        let closed = |alone: f64, both: f64| -> Vec<Option<f64>> {
+            let of = |w: &Weighed| match w.cause {
+                Cause::Single(0) => Some(alone),
+                Cause::Pair(0) => Some(both),
+                _ => None,
+            };
+            weighed.iter().map(of).collect()
+        };
+        let more = second_look(&fits, &weighed, &closed(0.25, 0.75));
+        let gained = (odds(&more) / odds(&weighed)).ln();
+        assert!((gained - SURENESS * SECOND_HELD_OUT * 3.0_f64.ln()).abs() < 1e-9, "{gained}");
+        let same = second_look(&fits, &weighed, &closed(0.8, 0.8));
+        assert!((odds(&same) / odds(&weighed) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn two_effects_that_close_the_same_on_unseen_runs_are_half_a_nat_apart_at_most() {
+        let fits = fits(8.0, &[0.5, 1.3, 6.0]);
+        let weighed = weigh(&fits);
+        let closed = |a: f64, b: f64| -> Vec<Option<f64>> {
+            let of = |w: &Weighed| match w.cause {
+                Cause::Single(0) => Some(a),
+                Cause::Single(1) => Some(b),
+                _ => None,
+            };
+            weighed.iter().map(of).collect()
+        };
+        let odds = |of: &[Weighed]| {
+            let share = |k| of.iter().find(|w| w.cause == Cause::Single(k)).map(|w| w.probability);
+            share(0).unwrap() / share(1).unwrap()
+        };
+        let alike = second_look(&fits, &weighed, &closed(0.97, 0.99));
+        assert!((odds(&alike).ln() - SURENESS * ALIKE_NATS).abs() < 1e-9, "{}", odds(&alike));
+        let apart = second_look(&fits, &weighed, &closed(0.97, 0.6));
+        assert!((odds(&apart) / odds(&weighed) - 1.0).abs() < 1e-12);
     }
 
     #[test]

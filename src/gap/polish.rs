@@ -37,8 +37,10 @@ pub fn polish(
             _ => continue,
         };
         let mut found = once(whole, &hypothesis.fit, of);
-        if rank == 0 {
+        if rank == 0 || matches!(cause, Cause::Pair(_)) {
             found = to_the_end(whole, found, of, ROUNDS);
+        }
+        if rank == 0 {
             let x = found.x[..base.x.len()].to_vec();
             base = base.or_better(to_the_end(whole, evaluate(whole, &[], x, of), of, ROUNDS));
         }

@@ -7,7 +7,7 @@ use crate::gap::held_out;
 use crate::gap::hypotheses::{Fits, Hypothesis};
 use crate::gap::problem::{Bench, Residuals};
 
-/// So many of the most probable causes are judged on the held-out runs.
+/// So many of the most probable causes with a fit of their own are judged on the held-out runs.
 const JUDGED: usize = 2;
 
 /// The gap on the held-out runs.
@@ -53,13 +53,13 @@ pub(super) fn how_far(
     let nominal = held_out::squares(bench, &nominal, judged);
     let base = of(&fits.base);
     let best = best_cause(weighed);
+    let mut judged_so_far = 0;
     let squares: Vec<Option<Vec<f64>>> = weighed
         .iter()
-        .enumerate()
-        .map(|(rank, w)| match w.cause {
-            Cause::None | Cause::Unknown => None,
-            _ if rank >= JUDGED => None,
-            _ => Some(of(decide::fit_of(fits, &w.cause))),
+        .map(|w| {
+            let own = matches!(w.cause, Cause::Single(_) | Cause::Pair(_));
+            judged_so_far += usize::from(own);
+            (own && judged_so_far <= JUDGED).then(|| of(decide::fit_of(fits, &w.cause)))
         })
         .collect();
     let place = weighed.iter().position(|w| w.cause == best);

@@ -101,8 +101,7 @@ pub fn diagnose(
     progress(0.0, "recalibrating the base model");
     let guess = guess(&campaign, &bench, settings.method, &seen, progress)?;
     let mut fits = hypotheses::fit_all(&mut bench, &guess, &seen, settings.method, progress)?;
-    let weighed = decide::weigh(&fits);
-    let decision = decide::decide(&bench, &fits, &weighed);
+    let mut weighed = decide::weigh(&fits);
     let modules = decide::modules(&bench, &fits);
     let (detectable, indistinguishable) =
         (detectable(&bench, &fits), indistinguishable(&bench, &fits));
@@ -114,7 +113,15 @@ pub fn diagnose(
         polish::polish(&whole, &mut fits, &weighed, &seen, progress);
     }
     progress(0.99, "judging the held-out runs");
-    let (gap, closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
+    let (mut gap, mut closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
+    if settings.hold_out {
+        let before = weighed;
+        weighed = decide::second_look(&fits, &before, &closed);
+        if weighed.iter().zip(&before).any(|(now, then)| now.cause != then.cause) {
+            (gap, closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
+        }
+    }
+    let decision = decide::decide(&bench, &fits, &weighed);
     let cells = where_::map(&whole, &at(&whole, &fits.base, &all));
     let experiments = experiment::next(&bench, &fits, &weighed);
     Ok(Diagnosis {

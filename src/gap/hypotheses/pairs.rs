@@ -11,7 +11,7 @@ const LITTLE: f64 = 1.2;
 /// Pairs that are kept.
 const PAIRED: usize = 3;
 /// Pairs that are fitted further, in so many rounds at most.
-const DEEPENED: usize = 2;
+const DEEPENED: usize = 3;
 const ROUNDS: usize = 6;
 
 /// Share of its level below which an effect is another start for pairs.

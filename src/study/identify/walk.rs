@@ -83,9 +83,7 @@ impl<'a> Walk<'a> {
                 }
             }
             paid += part(&table, &self.cells, member);
-            if member == 0 {
-                paid += whole(&table, &self.cells);
-            }
+            paid += whole(&table, &self.cells, member);
         }
         paid
     }
