@@ -33,6 +33,8 @@ pub mod scenario;
 pub mod study;
 #[cfg(feature = "cli")]
 pub mod sweep;
+#[cfg(feature = "cli")]
+pub mod threads;
 
 pub use block::TreadBlock;
 pub use error::{Fault, Problem};

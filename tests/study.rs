@@ -1,11 +1,11 @@
 //! The paper's numbers on the shipped compounds.
 
+use tread_block::block::Reductions;
 use tread_block::params::load;
 use tread_block::study::identify::objective::{compare, Fineness};
 use tread_block::study::margin;
 use tread_block::study::measured::Measurements;
 use tread_block::study::paper::{Cell, Column, TABLE_1};
-use tread_block::study::slides::Reductions;
 use tread_block::study::start::Start;
 use tread_block::study::table_one::TableOne;
 use tread_block::{study, Params};

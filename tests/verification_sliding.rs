@@ -90,12 +90,15 @@ fn sliding_is_the_independent_solution_within_the_tolerances_of_the_project() {
 }
 
 #[test]
-fn eight_contact_points_keep_the_frequency_and_friction_of_the_reference_case() {
-    // Both within 1 % of the independent solution.
-    let (expected, end) = reference(&CASES[0]);
-    let found = model(&CASES[0], end, 20e-6, 8);
-    let errors =
-        [found.frequency / expected.frequency, found.mean_friction / expected.mean_friction]
-            .map(|ratio| ratio - 1.0);
-    assert!(errors.iter().all(|error| error.abs() < 0.01), "{errors:?}");
+fn few_contact_points_keep_the_frequency_and_friction_of_the_reference_case() {
+    // Both within 1 % of the independent solution. Polynomials through 24 points need a finer mesh than a long block has
+    // by default; fine meshes are 0.6 to 1.2 % below the independent frequency of the long block, so 1.5 % there.
+    for (case, points, limit) in [(&CASES[0], 8, 0.01), (&CASES[3], 24, 0.015)] {
+        let (expected, end) = reference(case);
+        let found = model(case, end, 20e-6, points);
+        let errors =
+            [found.frequency / expected.frequency, found.mean_friction / expected.mean_friction]
+                .map(|ratio| ratio - 1.0);
+        assert!(errors.iter().all(|error| error.abs() < limit), "{}: {errors:?}", case.file);
+    }
 }

@@ -6,6 +6,7 @@ use crate::contact::Face;
 use crate::dynamics::{Integrator, Linear, Settings};
 use crate::error::{Fault, Problem};
 use crate::mesh::Mesh;
+use crate::params::check::elements_for;
 use crate::params::{FrictionForm, Params, Plane};
 use crate::reduction::Reduction;
 
@@ -46,9 +47,8 @@ impl Shape {
             given => given,
         };
         let points = Some(solver.contact_points).filter(|points| *points > 0);
-        // Elements that the polynomials through the points can be told apart on.
         let along = (ELEMENTS_ALONG * (block.length / REFERENCE_LENGTH).cbrt())
-            .max(0.5 * solver.contact_points as f64);
+            .max(elements_for(solver.contact_points) as f64);
         let omega = std::f64::consts::TAU * solver.frequency_bound;
         Self {
             length: block.length,

@@ -3,10 +3,12 @@
 mod build;
 mod memory;
 mod observe;
+mod reductions;
 mod signals;
 mod strike;
 
 pub use build::Shape;
+pub use reductions::{Reductions, KEPT};
 pub use signals::{InputSpec, OutputSpec, Outputs, INPUTS, OUTPUTS, STATIONS};
 
 use crate::contact::{wear, Face};

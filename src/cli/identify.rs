@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::output::{self, Done, Stop};
 use super::study::progress;
-use super::threads;
+use crate::block::Reductions;
 use crate::error::Fault;
 use crate::params::{load, Params};
 use crate::scenario::config;
@@ -13,7 +13,7 @@ use crate::study::identify::residual::{self, Explained, Question};
 use crate::study::identify::run::{identify, Progress, Task};
 use crate::study::identify::{laws, report, space};
 use crate::study::paper::{Column, TABLE_1};
-use crate::study::slides::Reductions;
+use crate::threads;
 
 const EXAMPLES: &str = "\
 Examples:

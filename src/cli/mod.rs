@@ -19,7 +19,6 @@ mod simulate;
 mod study;
 mod summary;
 mod sweep;
-mod threads;
 
 use std::process::ExitCode;
 

@@ -6,7 +6,6 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::output::{self, Done, Stop};
-use super::threads;
 use crate::error::Fault;
 use crate::params::{load, Params};
 use crate::scenario::config;
@@ -14,6 +13,7 @@ use crate::study;
 use crate::study::identify::objective::Fineness;
 use crate::study::measured::Measurements;
 use crate::study::report::{html, Study};
+use crate::threads;
 
 const EXAMPLES: &str = "\
 Examples:

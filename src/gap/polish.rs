@@ -2,7 +2,7 @@
 //! where parameters act without jumps; what a repaired model is used for is the settled vibration.
 
 use super::decide::{Cause, Weighed};
-use super::fit::{approach, evaluate, Effort, Fit};
+use super::fit::{approach, evaluate, to_the_end, Effort, Fit};
 use super::hypotheses::{effort, Fits};
 use super::problem::{Bench, Look};
 
@@ -10,9 +10,9 @@ use super::problem::{Bench, Look};
 const POLISHED: usize = 2;
 /// From the optimum of the starts to that of whole runs: soft first, as cycles jump.
 const SCHEDULE: [Effort; 2] = [effort(3, 9, 4.0, None), effort(5, 9, 1.0, None)];
-/// The best cause with a Jacobian of its new place, and the base model from its nuisance parameters: equal
+/// Rounds with Jacobians of their own of the best cause, and of the base model from its nuisance parameters: equal
 /// effort.
-const CROSS: [Effort; 1] = [effort(4, 4, 1.0, None)];
+const ROUNDS: usize = 3;
 
 /// Refits the base model and the most probable causes on the whole runs `of`; `whole` looks at all of
 /// them. A fit that does not get better there is kept as it was. Levels stay those of the starts.
@@ -38,11 +38,9 @@ pub fn polish(
         };
         let mut found = once(whole, &hypothesis.fit, of);
         if rank == 0 {
-            let again = approach(whole, Fit { jacobian: None, ..found.clone() }, of, &CROSS);
-            found = found.or_better(again);
+            found = to_the_end(whole, found, of, ROUNDS);
             let x = found.x[..base.x.len()].to_vec();
-            let again = approach(whole, evaluate(whole, &[], x, of), of, &CROSS);
-            base = base.or_better(again);
+            base = base.or_better(to_the_end(whole, evaluate(whole, &[], x, of), of, ROUNDS));
         }
         hypothesis.fit = found;
         hypothesis.look = Look::Whole;

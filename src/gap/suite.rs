@@ -31,6 +31,8 @@ enum Truth {
     None,
     /// An effect of the list in its last form.
     Effect(usize),
+    /// Two of them.
+    Pair([usize; 2]),
     /// The force channel's amplifier is off by some per cent; no effect of the list.
     Gain,
     /// The clock of the measurement runs at another rate; no effect of the list.
@@ -49,14 +51,20 @@ const OUTSIDE: [(Truth, &str); 4] = [
     (Truth::Drift, "x_drift"),
 ];
 
-/// Every fourth campaign has no effect, every eighth one that is not in the list.
+/// Of eight campaigns one has no effect, one has two, one an effect that is not in the list.
 fn truth(number: usize) -> Truth {
+    let count = fit_specs().len();
     match number % 8 {
-        0 | 4 => Truth::None,
+        0 => Truth::None,
+        4 => {
+            // Another pair every time until all steps are used up.
+            let (first, step) = (number / 8 * 3 % count, 1 + number / 8 * 5 % (count - 1));
+            Truth::Pair([first, (first + step) % count])
+        }
         7 => OUTSIDE[number / 8 % OUTSIDE.len()].0,
         k => {
             let before = number / 8 * 5 + [0, 0, 1, 2, 2, 3, 4][k];
-            Truth::Effect(before % fit_specs().len())
+            Truth::Effect(before % count)
         }
     }
 }
@@ -139,10 +147,25 @@ fn drawn(plan: &Plan, noise: &mut Noise) -> Params {
 
 /// Adds what causes the gap; returns its label.
 fn add(truth: Truth, severity: f64, params: &mut Params, noise: &mut Noise) -> Json {
-    let Truth::Effect(effect) = truth else {
-        let effects: Vec<&str> = OUTSIDE.iter().filter(|o| o.0 == truth).map(|o| o.1).collect();
-        return json!({"effects": effects, "severity": 1.0 + severity});
+    let effects = match truth {
+        Truth::Effect(effect) => vec![effect],
+        Truth::Pair(effects) => effects.to_vec(),
+        _ => {
+            let effects: Vec<&str> = OUTSIDE.iter().filter(|o| o.0 == truth).map(|o| o.1).collect();
+            return json!({"effects": effects, "severity": 1.0 + severity});
+        }
     };
+    for effect in &effects {
+        add_effect(*effect, severity, params, noise);
+    }
+    let specs = || effects.iter().map(|effect| &fit_specs()[*effect]);
+    let names: Vec<&str> = specs().map(|spec| spec.effect).collect();
+    let forms: Vec<&str> = specs().map(|spec| spec.forms[spec.forms.len() - 1].name).collect();
+    json!({"effects": names, "severity": 1.0 + severity, "form": forms.join(", ")})
+}
+
+/// Adds an effect of the list.
+fn add_effect(effect: usize, severity: f64, params: &mut Params, noise: &mut Noise) {
     let spec = &fit_specs()[effect];
     let form = spec.forms.len() - 1;
     let at = |(k, p): (usize, &crate::effects::FitParam)| {
@@ -156,7 +179,6 @@ fn add(truth: Truth, severity: f64, params: &mut Params, noise: &mut Noise) -> J
     };
     let values: Vec<f64> = spec.forms[form].params.iter().enumerate().map(at).collect();
     spec.apply(form, &values, params);
-    json!({"effects": [spec.effect], "severity": 1.0 + severity, "form": spec.forms[form].name})
 }
 
 /// What is wrong with the measurement itself.
@@ -185,7 +207,7 @@ fn distort(truth: Truth, severity: f64, record: &mut Record) {
                 column.iter_mut().enumerate().for_each(|(i, f)| *f += full * i as f64 / count);
             }
         }
-        Truth::None | Truth::Effect(_) => {}
+        Truth::None | Truth::Effect(_) | Truth::Pair(_) => {}
     }
 }
 

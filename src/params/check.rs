@@ -93,14 +93,28 @@ pub fn checked(params: &Params) -> Result<(), Fault> {
     }
 }
 
+/// Most contact points on a face whose mesh was not given.
+const MOST_POINTS: usize = 40;
+
+/// Elements along the face on whose nodes the polynomials through `points` Gauss-Lobatto points can be told apart.
+///
+/// With N evenly spaced nodes for n points the least singular value of the interpolation stays above 0.08 as long as
+/// N ≥ n + 2 and n ≤ 3.5 √N. Beyond, some motion of the points moves no node: it has neither mass nor stiffness, and the
+/// contact solver finds no solution.
+pub fn elements_for(points: usize) -> usize {
+    let nodes = (points + 2).max((4 * points * points).div_ceil(49));
+    nodes / 2
+}
+
 /// What is wrong with a number of contact points on `along` elements (0: chosen), if anything.
 fn contact_points(points: usize, along: usize) -> Option<Problem> {
-    let most = if along == 0 { 60 } else { 2 * along + 1 };
+    let most = (4..=MOST_POINTS).rev().find(|n| along == 0 || elements_for(*n) <= along);
+    let most = most.unwrap_or_default();
     (points > 0 && !(4..=most).contains(&points)).then(|| {
         Problem::new(
             "solver.contact_points",
             points.to_string(),
-            format!("0, or 4 to {most}: no more than there are nodes along the face"),
+            format!("0, or 4 to {most}: more cannot be told apart on the elements along the face"),
             "leave it at 0 for the nodes of the elements, or solver.elements_along at 0",
         )
     })

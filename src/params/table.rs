@@ -110,7 +110,7 @@ static BASE: &[ParamSpec] = &[
     enum_param!("drive.normal", drive.normal, NormalDrive, "NormalDrive", NORMAL_DRIVES, Fixed, "What drives the clamped face normal to the road"),
     count_param!("solver.elements_along", solver.elements_along, 0, 60, "Quadratic elements along the tread face; 0: chosen from the size of the block"),
     count_param!("solver.elements_up", solver.elements_up, 0, 40, "Quadratic elements over the height; 0: chosen from the size of the block"),
-    count_param!("solver.contact_points", solver.contact_points, 0, 60, "Contact points of the tread face, dense towards its edges, through which it moves as a polynomial; 0: the nodes of the elements. Fewer are faster"),
+    count_param!("solver.contact_points", solver.contact_points, 0, 40, "Contact points of the tread face, dense towards its edges, through which it moves as a polynomial; 0: the nodes of the elements. Fewer are faster"),
     real_param!("solver.frequency_bound", solver.frequency_bound, "Hz", KHZ, 1e3, 1e6, 2e4, Fixed, "Fixed-interface modes up to this frequency are kept"),
     real_param!("solver.tolerance", solver.tolerance, "1", None, 1e-9, 1.0, 1e-3, Fixed, "Error of one internal step relative to the motion's own scale"),
     real_param!("solver.max_step", solver.max_step, "s", US, 1e-8, 1e-3, 2e-5, Fixed, "Largest internal step"),

@@ -5,8 +5,8 @@
 //! profile w. Heun's method takes it forward; half the difference of its two slopes is the error of
 //! the first-order result and sets the next jump.
 
-use super::slides::Reductions;
 use super::wear_laws::WearLaw;
+use crate::block::Reductions;
 use crate::block::{Outputs, TreadBlock, STATIONS};
 use crate::error::Fault;
 use crate::params::Params;

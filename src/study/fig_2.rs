@@ -4,7 +4,7 @@ use super::identify::objective::Fineness;
 use super::measured::{Curve, Measurements};
 use super::plot::{svg, Panel, Series};
 use super::report::{csv, Study, Verdict};
-use super::slides::Reductions;
+use crate::block::Reductions;
 use crate::block::TreadBlock;
 use crate::contact::friction::{FrictionLaw, Law};
 use crate::drive::Pose;

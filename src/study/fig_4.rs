@@ -3,8 +3,9 @@
 use super::identify::objective::Fineness;
 use super::plot::{svg, Panel, Series};
 use super::report::{csv, Study, Verdict};
-use super::slides::{slide, Reductions};
+use super::slides::slide;
 use super::variation::{base, run_all, Run, Traces, DURATION};
+use crate::block::Reductions;
 use crate::error::Fault;
 use crate::params::Params;
 use crate::reduction::Reduction;

@@ -8,9 +8,9 @@ use std::fmt::Write;
 use super::identify::objective::Fineness;
 use super::identify::space::{get, set};
 use super::paper::Column;
-use super::slides::Reductions;
 use super::start::Start;
 use super::table_one::TableOne;
+use crate::block::Reductions;
 use crate::params::Params;
 
 /// A parameter and the factor on it.

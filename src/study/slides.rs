@@ -1,37 +1,11 @@
 //! Sliding runs of many operating points, with the reduction of each geometry made once.
 
-use std::sync::{Arc, Mutex, PoisonError};
-
 use super::start::Start;
 use super::watch::{Observed, Watch};
-use crate::block::{Outputs, Shape, TreadBlock, STATIONS};
+use crate::block::{Outputs, Reductions, TreadBlock, STATIONS};
 use crate::error::Fault;
 use crate::params::Params;
-use crate::reduction::Reduction;
 use crate::scenario::{self, Inputs, Plan};
-
-/// Reductions made so far, one per [`Shape`].
-#[derive(Debug, Default)]
-pub struct Reductions {
-    made: Mutex<Vec<(Shape, Arc<Reduction>)>>,
-}
-
-impl Reductions {
-    /// The reduction for `params`, made at the first call for its shape.
-    ///
-    /// # Errors
-    /// What stops the reduction.
-    pub fn of(&self, params: &Params) -> Result<Arc<Reduction>, Fault> {
-        let shape = Shape::of(params);
-        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, reduction)) = made.iter().find(|(s, _)| *s == shape) {
-            return Ok(reduction.clone());
-        }
-        let reduction = Arc::new(shape.reduce()?);
-        made.push((shape, reduction.clone()));
-        Ok(reduction)
-    }
-}
 
 /// What a sliding run is made of beside the block's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]

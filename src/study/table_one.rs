@@ -8,8 +8,8 @@ use super::margin;
 use super::paper::{Cell, Column, SPEEDS, TABLE_1};
 use super::plot::{svg, Panel, Series};
 use super::report::{Study, Verdict};
-use super::slides::Reductions;
 use super::start::Start;
+use crate::block::Reductions;
 use crate::error::Fault;
 use crate::params::Params;
 

@@ -1,19 +1,17 @@
 //! Runs the points that are not done yet, on as many threads as there are.
 
-use std::collections::VecDeque;
 use std::panic::{catch_unwind, AssertUnwindSafe};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
 use super::journal::{Journal, Record};
 use super::measures::{Traces, COLUMNS};
 use super::plan::Plan;
-use crate::block::{Shape, TreadBlock};
+use crate::block::{Reductions, Shape, TreadBlock, KEPT};
 use crate::error::Fault;
-use crate::params::Params;
-use crate::reduction::Reduction;
 use crate::scenario;
+use crate::threads;
 
 /// Runs all points of `plan` that `done` lacks, writes each to `journal` and shows it to `visit`;
 /// returns the records of all points in their order.
@@ -27,16 +25,14 @@ pub fn run(
     journal: Journal,
     visit: impl Fn(&Record) + Sync,
 ) -> Result<Vec<Record>, Fault> {
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(jobs)
-        .build()
-        .map_err(|e| Fault::unusable("threads", e))?;
+    let pool = threads::pool(jobs)?;
     let mut known = vec![false; plan.points.len()];
     done.iter().for_each(|record| known[record.point] = true);
     let pending: Vec<usize> = (0..known.len()).filter(|i| !known[*i]).collect();
     let reductions = Reductions::default();
     let shared = Mutex::new((journal, done));
     pool.install(|| {
+        prepare(plan, &pending, &reductions);
         // One point at a time: what a point costs varies with its speed and its failure.
         pending.par_iter().with_max_len(1).try_for_each(|&index| {
             let record = point(plan, index, &reductions);
@@ -50,6 +46,26 @@ pub fn run(
     let (_, mut records) = shared.into_inner().unwrap_or_else(PoisonError::into_inner);
     records.sort_by_key(|record| record.point);
     Ok(records)
+}
+
+/// Points whose shapes are looked at beforehand.
+const LOOKED_AT: usize = 1000;
+
+/// Makes the reductions of the pending points side by side, if they are few: points of one shape would else wait for it
+/// together, on all cores.
+fn prepare(plan: &Plan, pending: &[usize], reductions: &Reductions) {
+    let mut shapes: Vec<Shape> = Vec::new();
+    for config in pending.iter().take(LOOKED_AT).filter_map(|&index| plan.config(index).ok()) {
+        let shape = Shape::of(&config.params);
+        if !shapes.contains(&shape) {
+            shapes.push(shape);
+        }
+        if shapes.len() > KEPT {
+            return;
+        }
+    }
+    // What stops a reduction is told by its points.
+    shapes.par_iter().with_max_len(1).for_each(|shape| drop(reductions.of_shape(*shape)));
 }
 
 /// Runs one point. Even a panic, which would be an error of ours, costs this point only.
@@ -76,38 +92,6 @@ fn simulate(
         Ok(())
     })?;
     Ok(traces.measures(&config))
-}
-
-/// Shapes whose reductions are kept: a plan over the geometry would else fill the memory.
-const KEPT: usize = 64;
-
-type Made = Arc<OnceLock<Result<Arc<Reduction>, Fault>>>;
-
-/// Reductions shared by the blocks of one [`Shape`]; threads wait only for the shape that they need.
-#[derive(Debug, Default)]
-struct Reductions {
-    kept: Mutex<VecDeque<(Shape, Made)>>,
-}
-
-impl Reductions {
-    fn of(&self, params: &Params) -> Result<Arc<Reduction>, Fault> {
-        let shape = Shape::of(params);
-        let made = self.place(shape);
-        made.get_or_init(|| shape.reduce().map(Arc::new)).clone()
-    }
-
-    fn place(&self, shape: Shape) -> Made {
-        let mut kept = lock(&self.kept);
-        if let Some((_, made)) = kept.iter().find(|(known, _)| *known == shape) {
-            return made.clone();
-        }
-        if kept.len() == KEPT {
-            kept.pop_front();
-        }
-        let made = Made::default();
-        kept.push_back((shape, made.clone()));
-        made
-    }
 }
 
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {

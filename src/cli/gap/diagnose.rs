@@ -8,12 +8,12 @@ use serde_json::json;
 
 use super::score;
 use crate::cli::output::{self, Done, Stop};
-use crate::cli::threads;
 use crate::error::Fault;
 use crate::gap::diagnose::{self, Diagnosis, Settings};
 use crate::gap::hypotheses::Method;
 use crate::gap::score::{cases, figures};
 use crate::gap::{json, report};
+use crate::threads;
 
 /// A step of the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

@@ -65,6 +65,24 @@ pub fn approach(bench: &Bench, mut fit: Fit, of: &[usize], schedule: &[Effort]) 
     fit
 }
 
+/// Share of the objective that a round of [`to_the_end`] must leave at most to be followed by another.
+const ENOUGH: f64 = 0.97;
+/// A round with a Jacobian of its own.
+const ROUND: [Effort; 1] = [Effort { steps: 4, refresh: 4, view: View::PLAIN }];
+
+/// Rounds, so many at most, until one brings next to nothing.
+pub fn to_the_end(bench: &Bench, mut fit: Fit, of: &[usize], rounds: usize) -> Fit {
+    for _ in 0..rounds {
+        let before = fit.objective;
+        let found = approach(bench, Fit { jacobian: None, ..fit.clone() }, of, &ROUND);
+        fit = fit.or_better(found);
+        if fit.objective > ENOUGH * before {
+            break;
+        }
+    }
+    fit
+}
+
 /// Looks around an optimum in the directions that its data leave open, and goes to the best place
 /// found: a limit cycle of another kind is not reached by descending.
 pub fn explore(bench: &Bench, fit: Fit, of: &[usize], draws: usize, view: View) -> Fit {

@@ -2,7 +2,7 @@
 
 use super::single::{start_effect, FINE};
 use super::{full_jacobian, level, ranked, Hypothesis, Method};
-use crate::gap::fit::{approach, evaluate};
+use crate::gap::fit::{approach, evaluate, to_the_end};
 use crate::gap::problem::{Bench, Choice};
 use crate::gap::symmetry::{self, Finding};
 
@@ -10,6 +10,10 @@ use crate::gap::symmetry::{self, Finding};
 const LITTLE: f64 = 1.2;
 /// Pairs that are kept.
 const PAIRED: usize = 3;
+/// Pairs that are fitted further.
+const DEEPENED: usize = 2;
+/// Rounds of a fit that goes on, at most.
+const ROUNDS: usize = 6;
 /// Share of its level below which an effect is another start for pairs.
 const MUCH_BETTER: f64 = 0.9;
 
@@ -55,14 +59,21 @@ fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis], of: &[usi
     let fit = approach(bench, evaluate(bench, &added, x, of), of, &FINE);
     for single in singles.iter_mut().filter(|s| s.added[0].effect == added[0].effect) {
         single.take_better(bench, fit.clone(), of);
+        deepen(bench, single, of);
     }
+}
+
+/// Fits on, to where it no longer gets better: two effects that share a valley leave it late.
+fn deepen(bench: &Bench, hypothesis: &mut Hypothesis, of: &[usize]) {
+    let fit = to_the_end(bench, hypothesis.fit.clone(), of, ROUNDS);
+    hypothesis.take_better(bench, fit, of);
 }
 
 /// The best effect with every other that the symmetries allow beside it, then once more the best
 /// of these pairs.
 fn pairs(
     bench: &Bench,
-    singles: &[Hypothesis],
+    singles: &mut [Hypothesis],
     findings: &[Finding],
     of: &[usize],
     method: Method,
@@ -75,6 +86,8 @@ fn pairs(
     if singles[first].level < LITTLE {
         return Vec::new();
     }
+    // Equal effort: what a pair is given more rounds for, its first effect alone is given as well.
+    deepen(bench, &mut singles[first], of);
     let mut from = singles[first].fit.clone();
     if from.jacobian.is_none() {
         from.jacobian = Some(full_jacobian(bench, &from, of));
@@ -89,9 +102,8 @@ fn pairs(
         let (found, _) = start_effect(bench, &from, choice, of, method);
         out.push(level(bench, found, of));
     }
-    if let Some(at) = ranked(&out).first().copied() {
-        let fit = approach(bench, out[at].fit.clone(), of, &FINE);
-        out[at].take_better(bench, fit, of);
+    for at in ranked(&out).into_iter().take(DEEPENED) {
+        deepen(bench, &mut out[at], of);
     }
     out.sort_by(|a, b| a.level.total_cmp(&b.level));
     out.truncate(PAIRED);

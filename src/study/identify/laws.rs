@@ -8,10 +8,10 @@ use nalgebra::{Matrix2, Vector2};
 use super::objective::{Fineness, Problem};
 use super::run::{self, Identified, Task};
 use super::space::{set, unknowns, Unknown};
+use crate::block::Reductions;
 use crate::contact::friction::{FrictionLaw, Law};
 use crate::error::Fault;
 use crate::params::{table, Friction, FrictionForm, Params};
-use crate::study::slides::Reductions;
 use crate::study::start::Start;
 use crate::study::table_one::TableOne;
 

@@ -3,10 +3,11 @@
 use rayon::prelude::*;
 
 use super::space::{apply, Unknown};
+use crate::block::Reductions;
 use crate::error::Fault;
 use crate::params::Params;
 use crate::study::paper::{Cell, Column, PRESSURE, SPEEDS};
-use crate::study::slides::{observe, Point, Reductions};
+use crate::study::slides::{observe, Point};
 use crate::study::start::Start;
 use crate::study::watch::Observed;
 

@@ -6,10 +6,10 @@ use std::fmt::Write;
 use super::gauss_newton::improve;
 use super::objective::{Fineness, Problem};
 use super::space::{get, places, Unknown};
+use crate::block::Reductions;
 use crate::effects::{fit_specs, FitParam, FitSpec, Spread};
 use crate::params::Params;
 use crate::study::paper::Column;
-use crate::study::slides::Reductions;
 use crate::study::table_one::TableOne;
 
 /// An effect begins at this share of its usual severity, and once more at the whole of it.

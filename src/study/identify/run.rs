@@ -6,10 +6,10 @@ use super::hops::Hops;
 use super::objective::{modulus_over_density, Fineness, Problem};
 use super::space::{places, Unknown};
 use super::walk::Walk;
+use crate::block::Reductions;
 use crate::error::Fault;
 use crate::params::Params;
 use crate::study::paper::{Column, TABLE_1};
-use crate::study::slides::Reductions;
 
 /// What an identification is asked for.
 #[derive(Clone, Debug)]

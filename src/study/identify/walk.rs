@@ -112,10 +112,10 @@ impl<'a> Walk<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::block::Reductions;
     use crate::params::Params;
     use crate::study::identify::objective::Fineness;
     use crate::study::identify::space::unknowns;
-    use crate::study::slides::Reductions;
 
     #[test]
     fn a_step_changes_one_unknown_at_least_and_the_carriage_most() {
