@@ -4,6 +4,7 @@ pub mod cycle_jump;
 pub mod fig_2;
 pub mod fig_3;
 pub mod fig_4;
+pub mod fig_7;
 pub mod identified;
 pub mod identify;
 pub mod margin;
@@ -40,7 +41,7 @@ const STUDIES: &[(&str, Runner)] = &[
     ("fig-4", Runner::Model(fig_4::fig_4)),
     ("fig-5", Runner::Model(vibration::fig_5)),
     ("fig-6", Runner::Model(vibration::fig_6)),
-    ("fig-7", Runner::Model(vibration::fig_7)),
+    ("fig-7", Runner::Model(fig_7::fig_7)),
     ("table-1", Runner::Model(table_one::table_1)),
     ("fig-8", Runner::Model(rolling::fig_8)),
     ("fig-9", Runner::Model(rolling::fig_9)),

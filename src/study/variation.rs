@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::identify::objective::Fineness;
 use super::paper::PRESSURE;
 use super::plot::{Panel, Series};
-use super::report::csv;
+use super::report::{change, csv, Verdict};
 use super::slides::{slide, sticking, Point};
 use super::start::Start;
 use super::watch::{self, SILENCE};
@@ -219,4 +219,31 @@ impl Variation {
         let axes = ["displacement [um]", "velocity relative to the clamped face [mm/s]"];
         Panel::new("limit cycle of the run-in edge", axes, series.collect())
     }
+}
+
+/// Verdicts on how amplitude and frequency go with a quantity, over the runs that oscillate; `rises`:
+/// amplitude, frequency.
+pub fn trend(runs: &[Ran], quantity: &str, rises: [bool; 2]) -> Vec<Verdict> {
+    let loud: Vec<&Ran> = runs.iter().filter(|r| r.2.frequency > 0.0).collect();
+    let values = [
+        ("amplitude", loud.iter().map(|r| r.2.displacement_amplitude).collect::<Vec<_>>()),
+        ("frequency", loud.iter().map(|r| r.2.frequency).collect()),
+    ];
+    values
+        .into_iter()
+        .zip(rises)
+        .map(|((what, values), rises)| {
+            let word = if rises { "rises" } else { "falls" };
+            let steps = values.windows(2).all(|w| (w[1] > w[0]) == rises);
+            let number = match (values.first(), values.last()) {
+                (Some(a), Some(b)) if values.len() > 1 => change(*a, *b),
+                _ => "fewer than two runs oscillate".to_string(),
+            };
+            Verdict::new(
+                format!("{what} {word} with {quantity}"),
+                steps && values.len() > 1,
+                number,
+            )
+        })
+        .collect()
 }

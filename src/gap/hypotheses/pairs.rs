@@ -10,10 +10,10 @@ use crate::gap::symmetry::{self, Finding};
 const LITTLE: f64 = 1.2;
 /// Pairs that are kept.
 const PAIRED: usize = 3;
-/// Pairs that are fitted further, in so many rounds at most.
+/// Pairs that are fitted further.
 const DEEPENED: usize = 3;
+/// Rounds of a fit that goes on, at most.
 const ROUNDS: usize = 6;
-
 /// Share of its level below which an effect is another start for pairs.
 const MUCH_BETTER: f64 = 0.9;
 
