@@ -133,6 +133,11 @@ impl Face {
         }
     }
 
+    /// Does the pressure depend on the approach speed?
+    pub fn damped(&self) -> bool {
+        self.damping > 0.0 || self.viscosity > 0.0
+    }
+
     /// Slopes of the normal force of each node at the pressure `p` \[Pa\].
     pub fn slopes_at(&self, p: f64) -> NormalSlopes {
         let slope = normal::pressure(&self.contact, normal::compression(&self.contact, p)).1;

@@ -1,8 +1,8 @@
 //! Where fits begin: from the datasheet, for the base model and for every effect alike.
 
 use super::campaign::RunKind;
-use super::fit::{approach, evaluate, Effort, Fit};
-use super::hypotheses::{effort, Method, SETTLED};
+use super::fit::{approach, evaluate, Effort, Fit, SETTLED};
+use super::hypotheses::{effort, Method};
 use super::noise::Noise;
 use super::problem::{Bench, Choice};
 use super::symmetry::{self, Finding};

@@ -70,13 +70,17 @@ const ENOUGH: f64 = 0.97;
 /// A round with a Jacobian of its own.
 const ROUND: [Effort; 1] = [Effort { steps: 4, refresh: 4, view: View::PLAIN }];
 
-/// Rounds, so many at most, until one brings next to nothing.
+/// Level from which on an optimum is good.
+pub const SETTLED: f64 = 0.8;
+
+/// Rounds, so many at most, until one brings next to nothing or leaves a good optimum.
 pub fn to_the_end(bench: &Bench, mut fit: Fit, of: &[usize], rounds: usize) -> Fit {
     for _ in 0..rounds {
         let before = fit.objective;
         let found = approach(bench, Fit { jacobian: None, ..fit.clone() }, of, &ROUND);
         fit = fit.or_better(found);
-        if fit.objective > ENOUGH * before {
+        let good = fit.objective < SETTLED * bench.total_weight(of);
+        if good || fit.objective > ENOUGH * before {
             break;
         }
     }

@@ -1,15 +1,13 @@
 //! The base model, recalibrated: nothing is credited to an effect that it could have explained.
 
 use super::{effort, full_jacobian, Hypothesis};
-use crate::gap::fit::{approach, evaluate, explore, improve, Effort, Fit, View};
+use crate::gap::fit::{approach, evaluate, explore, improve, Effort, Fit, View, SETTLED};
 use crate::gap::problem::Bench;
 
 /// Once more from another place.
 const HOME: [Effort; 2] = [effort(1, 1, 3.0, None), effort(4, 2, 1.0, None)];
 /// Places looked at where the optimum is not good.
 const DRAWS: usize = 32;
-/// Level from which on an optimum is good.
-pub(in crate::gap) const SETTLED: f64 = 0.8;
 /// Once more.
 const AGAIN: Effort = effort(2, 9, 1.0, None);
 

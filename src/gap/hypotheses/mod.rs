@@ -4,8 +4,6 @@ mod base;
 mod pairs;
 mod single;
 
-pub(super) use base::SETTLED;
-
 use super::fit::{self, columns, evaluate, Effort, Fit, View};
 use super::guess::Guess;
 use super::problem::{Bench, Choice, Look};
