@@ -1,5 +1,5 @@
-//! The Newton direction of a block that is turned against the road: with the full matrix, since there the normal
-//! and the tangential velocities do not part.
+//! The Newton direction with the full matrix: of a block that is turned against the road, whose normal and tangential
+//! velocities do not part, and of one whose contact is damped, with slopes that differ from node to node.
 
 use super::dense;
 use super::kinematics::Kinematics;
