@@ -19,8 +19,8 @@ pub const PRIOR_UNKNOWN: f64 = -1.0;
 /// Logarithm of the odds of two effects at once before the data.
 pub const PRIOR_PAIR: f64 = -4.0;
 /// Nats per logarithm of what a pair leaves on runs that no fit has seen, over what its first effect alone leaves
-/// there. In `open/` and three own pairs a true second effect takes that by a factor of 1.4 to 4, a false one by 1.1 at
-/// most.
+/// there. In `open/` and three own pairs a true second effect takes that by a factor of 1.4 to 2.4, a false one by 1.1
+/// at most.
 pub const SECOND_HELD_OUT: f64 = 4.0;
 /// Logarithm of what two single effects leave on runs that no fit has seen, up to which these do not tell them apart.
 pub const ALIKE: f64 = 0.25;

@@ -10,6 +10,10 @@ use super::problem::Bench;
 use super::symmetry;
 use crate::effects::fit_specs;
 
+/// So many of the most probable causes with a fit of their own are polished on whole runs and judged on those that no fit
+/// has seen.
+pub const JUDGED: usize = 2;
+
 /// What a probability belongs to.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cause {
@@ -21,6 +25,13 @@ pub enum Cause {
     Single(usize),
     /// Pair number of `Fits::pairs`.
     Pair(usize),
+}
+
+impl Cause {
+    /// Does it have a fit of its own, beside that of the base model?
+    pub const fn is_fitted(&self) -> bool {
+        matches!(self, Self::Single(_) | Self::Pair(_))
+    }
 }
 
 /// A cause with its probability.
@@ -117,11 +128,13 @@ pub fn weigh(fits: &Fits) -> Vec<Weighed> {
     }
     let highest = nats.iter().map(|n| n.1).fold(f64::NEG_INFINITY, f64::max);
     let odds = |n: f64| (SURENESS * (n - highest)).exp();
-    let total: f64 = nats.iter().map(|n| odds(n.1)).sum();
-    let mut out: Vec<Weighed> = nats
-        .into_iter()
-        .map(|(cause, n)| Weighed { cause, probability: odds(n) / total })
-        .collect();
+    normalised(nats.into_iter().map(|(cause, n)| Weighed { cause, probability: odds(n) }).collect())
+}
+
+/// Odds as probabilities that sum to one, most probable first.
+fn normalised(mut out: Vec<Weighed>) -> Vec<Weighed> {
+    let total: f64 = out.iter().map(|w| w.probability).sum();
+    out.iter_mut().for_each(|w| w.probability /= total);
     out.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     out
 }
@@ -145,10 +158,7 @@ pub fn second_look(fits: &Fits, weighed: &[Weighed], closed: &[Option<f64>]) -> 
             (out[likelier].probability, out[other].probability) = (most, sum - most);
         }
     }
-    let total: f64 = out.iter().map(|w| w.probability).sum();
-    out.iter_mut().for_each(|w| w.probability /= total);
-    out.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    out
+    normalised(out)
 }
 
 /// Share of the gap that a cause leaves.
@@ -319,6 +329,18 @@ mod tests {
         assert_eq!(weigh(&fits(8.0, &[7.5, 7.0, 7.9]))[0].cause, Cause::Unknown);
     }
 
+    /// Probability of one cause over that of another.
+    fn odds_of(weighed: &[Weighed], a: &Cause, b: &Cause) -> f64 {
+        let share = |c: &Cause| weighed.iter().find(|w| w.cause == *c).unwrap().probability;
+        share(a) / share(b)
+    }
+
+    /// Closed fractions cause by cause, of two that were judged.
+    fn closed_by(weighed: &[Weighed], judged: [(Cause, f64); 2]) -> Vec<Option<f64>> {
+        let of = |w: &Weighed| judged.iter().find(|j| j.0 == w.cause).map(|j| j.1);
+        weighed.iter().map(of).collect()
+    }
+
     /// An effect of the list.
     fn choice(effect: usize) -> Choice {
         Choice { effect, form: 0 }
@@ -334,17 +356,9 @@ mod tests {
         pair.added = vec![choice(0), choice(1)];
         fits.pairs = vec![pair];
         let weighed = weigh(&fits);
-        let share = |of: &[Weighed], cause: &Cause| {
-            of.iter().find(|w| w.cause == *cause).map(|w| w.probability).unwrap()
-        };
-        let odds = |of: &[Weighed]| share(of, &Cause::Pair(0)) / share(of, &Cause::Single(0));
-        let closed = |alone: f64, both: f64| -> Vec<Option<f64>> {
-            let of = |w: &Weighed| match w.cause {
-                Cause::Single(0) => Some(alone),
-                Cause::Pair(0) => Some(both),
-                _ => None,
-            };
-            weighed.iter().map(of).collect()
+        let odds = |of: &[Weighed]| odds_of(of, &Cause::Pair(0), &Cause::Single(0));
+        let closed = |alone: f64, both: f64| {
+            closed_by(&weighed, [(Cause::Single(0), alone), (Cause::Pair(0), both)])
         };
         let more = second_look(&fits, &weighed, &closed(0.25, 0.75));
         let gained = (odds(&more) / odds(&weighed)).ln();
@@ -357,18 +371,9 @@ mod tests {
     fn two_effects_that_close_the_same_on_unseen_runs_are_half_a_nat_apart_at_most() {
         let fits = fits(8.0, &[0.5, 1.3, 6.0]);
         let weighed = weigh(&fits);
-        let closed = |a: f64, b: f64| -> Vec<Option<f64>> {
-            let of = |w: &Weighed| match w.cause {
-                Cause::Single(0) => Some(a),
-                Cause::Single(1) => Some(b),
-                _ => None,
-            };
-            weighed.iter().map(of).collect()
-        };
-        let odds = |of: &[Weighed]| {
-            let share = |k| of.iter().find(|w| w.cause == Cause::Single(k)).map(|w| w.probability);
-            share(0).unwrap() / share(1).unwrap()
-        };
+        let closed =
+            |a: f64, b: f64| closed_by(&weighed, [(Cause::Single(0), a), (Cause::Single(1), b)]);
+        let odds = |of: &[Weighed]| odds_of(of, &Cause::Single(0), &Cause::Single(1));
         let alike = second_look(&fits, &weighed, &closed(0.97, 0.99));
         assert!((odds(&alike).ln() - SURENESS * ALIKE_NATS).abs() < 1e-9, "{}", odds(&alike));
         let apart = second_look(&fits, &weighed, &closed(0.97, 0.6));

@@ -109,7 +109,7 @@ fn hypotheses_json(d: &Diagnosis) -> Vec<Json> {
             if w.cause != Cause::Unknown {
                 out.insert("level".into(), json!(decide::fit_of(&d.fits, &w.cause).level));
             }
-            let own = matches!(w.cause, Cause::Single(_) | Cause::Pair(_));
+            let own = w.cause.is_fitted();
             let list = if own { parameters(d, &w.cause) } else { Vec::new() };
             let base = if own { d.bench.base_size() } else { 0 };
             out.insert("parameters".into(), json!(list.into_iter().skip(base).collect::<Vec<_>>()));

@@ -1,13 +1,11 @@
 //! The most probable causes once more, on whole runs: the fits before look at the first milliseconds,
 //! where parameters act without jumps; what a repaired model is used for is the settled vibration.
 
-use super::decide::{Cause, Weighed};
+use super::decide::{Cause, Weighed, JUDGED};
 use super::fit::{approach, evaluate, to_the_end, Effort, Fit};
 use super::hypotheses::{effort, Fits};
 use super::problem::{Bench, Look};
 
-/// Causes with a fit of their own that are polished.
-const POLISHED: usize = 2;
 /// From the optimum of the starts to that of whole runs: soft first, as cycles jump.
 const SCHEDULE: [Effort; 2] = [effort(3, 9, 4.0, None), effort(5, 9, 1.0, None)];
 /// Rounds with Jacobians of their own of the best cause, and of the base model from its nuisance parameters: equal
@@ -24,9 +22,8 @@ pub fn polish(
     progress: &(dyn Fn(f64, &str) + Sync),
 ) {
     debug_assert!(whole.look() == Look::Whole);
-    let own = |w: &&Weighed| matches!(w.cause, Cause::Single(_) | Cause::Pair(_));
-    let causes: Vec<Cause> =
-        weighed.iter().filter(own).take(POLISHED).map(|w| w.cause.clone()).collect();
+    let causes = weighed.iter().map(|w| &w.cause).filter(|cause| cause.is_fitted());
+    let causes: Vec<Cause> = causes.take(JUDGED).cloned().collect();
     progress(0.95, "the base model on whole runs");
     let mut base = once(whole, &fits.base.fit, of);
     for (rank, cause) in causes.iter().enumerate() {

@@ -1,14 +1,11 @@
 //! How far the gap shrinks: the recalibrated model and the likeliest causes on runs that no fit has seen.
 
 use super::best_cause;
-use crate::gap::decide::{self, Cause, Weighed};
+use crate::gap::decide::{self, Cause, Weighed, JUDGED};
 use crate::gap::fit::evaluate;
 use crate::gap::held_out;
 use crate::gap::hypotheses::{Fits, Hypothesis};
 use crate::gap::problem::{Bench, Residuals};
-
-/// So many of the most probable causes with a fit of their own are judged on the held-out runs.
-const JUDGED: usize = 2;
 
 /// The gap on the held-out runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +54,7 @@ pub(super) fn how_far(
     let squares: Vec<Option<Vec<f64>>> = weighed
         .iter()
         .map(|w| {
-            let own = matches!(w.cause, Cause::Single(_) | Cause::Pair(_));
+            let own = w.cause.is_fitted();
             judged_so_far += usize::from(own);
             (own && judged_so_far <= JUDGED).then(|| of(decide::fit_of(fits, &w.cause)))
         })

@@ -169,8 +169,7 @@ fn guess(
 
 /// The most probable cause with a fit of its own.
 pub fn best_cause(weighed: &[Weighed]) -> Cause {
-    let own = |w: &&Weighed| matches!(w.cause, Cause::Single(_) | Cause::Pair(_));
-    weighed.iter().find(own).map_or(Cause::None, |w| w.cause.clone())
+    weighed.iter().find(|w| w.cause.is_fitted()).map_or(Cause::None, |w| w.cause.clone())
 }
 
 /// What was wrong with the data, if it was worked around.

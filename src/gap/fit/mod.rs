@@ -68,7 +68,7 @@ pub fn approach(bench: &Bench, mut fit: Fit, of: &[usize], schedule: &[Effort]) 
 /// Share of the objective that a round of [`to_the_end`] must leave at most to be followed by another.
 const ENOUGH: f64 = 0.97;
 /// A round with a Jacobian of its own.
-const ROUND: [Effort; 1] = [Effort { steps: 4, refresh: 4, view: View::PLAIN }];
+pub const FINE: [Effort; 1] = [Effort { steps: 4, refresh: 4, view: View::PLAIN }];
 
 /// Level from which on an optimum is good.
 pub const SETTLED: f64 = 0.8;
@@ -77,7 +77,7 @@ pub const SETTLED: f64 = 0.8;
 pub fn to_the_end(bench: &Bench, mut fit: Fit, of: &[usize], rounds: usize) -> Fit {
     for _ in 0..rounds {
         let before = fit.objective;
-        let found = approach(bench, Fit { jacobian: None, ..fit.clone() }, of, &ROUND);
+        let found = approach(bench, Fit { jacobian: None, ..fit.clone() }, of, &FINE);
         fit = fit.or_better(found);
         let good = fit.objective < SETTLED * bench.total_weight(of);
         if good || fit.objective > ENOUGH * before {

@@ -1,8 +1,8 @@
 //! Two effects at once.
 
-use super::single::{start_effect, FINE};
+use super::single::start_effect;
 use super::{full_jacobian, level, ranked, Hypothesis, Method};
-use crate::gap::fit::{approach, evaluate, to_the_end};
+use crate::gap::fit::{approach, evaluate, to_the_end, FINE};
 use crate::gap::problem::{Bench, Choice};
 use crate::gap::symmetry::{self, Finding};
 

@@ -2,7 +2,7 @@
 
 use super::{effort, full_jacobian, level, ranked, Hypothesis, Method};
 use crate::effects::Spread;
-use crate::gap::fit::{approach, columns, evaluate, Effort, Fit};
+use crate::gap::fit::{approach, columns, evaluate, Effort, Fit, FINE};
 use crate::gap::guess::{starts, Guess};
 use crate::gap::problem::{Bench, Choice, Coordinate};
 
@@ -17,8 +17,6 @@ const NEXT_TO_NONE: f64 = -3.5;
 /// Whitened severity at which a second effect begins beside a first one that was fitted without it: a stronger one
 /// would have to take back first what that fit has done in its place.
 const FAINT: f64 = -2.4;
-/// With Jacobians of its own.
-pub(super) const FINE: [Effort; 1] = [effort(4, 4, 1.0, None)];
 /// From an effect's own first guess.
 const GUESS: [Effort; 2] = [effort(2, 2, 3.0, None), effort(5, 2, 1.0, None)];
 
