@@ -64,8 +64,10 @@ fn prepare(plan: &Plan, pending: &[usize], reductions: &Reductions) {
             return;
         }
     }
-    // What stops a reduction is told by its points.
-    shapes.par_iter().with_max_len(1).for_each(|shape| drop(reductions.of_shape(*shape)));
+    // What stops a reduction, be it a panic, is told by its points.
+    shapes.par_iter().with_max_len(1).for_each(|shape| {
+        drop(catch_unwind(AssertUnwindSafe(|| reductions.of_shape(*shape))));
+    });
 }
 
 /// Runs one point. Even a panic, which would be an error of ours, costs this point only.
