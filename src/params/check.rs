@@ -109,12 +109,13 @@ pub fn elements_for(points: usize) -> usize {
 /// What is wrong with a number of contact points on `along` elements (0: chosen), if anything.
 fn contact_points(points: usize, along: usize) -> Option<Problem> {
     let most = (4..=MOST_POINTS).rev().find(|n| along == 0 || elements_for(*n) <= along);
-    let most = most.unwrap_or_default();
-    (points > 0 && !(4..=most).contains(&points)).then(|| {
+    let fits = points == 0 || most.is_some_and(|most| (4..=most).contains(&points));
+    (!fits).then(|| {
+        let few = most.map_or(String::new(), |most| format!(", or 4 to {most}"));
         Problem::new(
             "solver.contact_points",
             points.to_string(),
-            format!("0, or 4 to {most}: more cannot be told apart on the elements along the face"),
+            format!("0{few}: more cannot be told apart on the elements along the face"),
             "leave it at 0 for the nodes of the elements, or solver.elements_along at 0",
         )
     })
