@@ -121,7 +121,7 @@ pub(super) fn integrator(linear: &Linear, face: &Face, params: &Params) -> Integ
         max_step: solver.max_step,
         min_step: solver.min_step,
     };
-    Integrator::new(linear, settings, face.slopes_at(params.friction.reference_pressure))
+    Integrator::new(linear, settings, face.stiffness_at(params.friction.reference_pressure))
 }
 
 /// Reads a measured characteristic: CSV with the columns pressure_pa, speed_m_s, mu.

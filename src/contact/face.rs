@@ -77,15 +77,6 @@ impl Placed {
     }
 }
 
-/// How the normal force of each node changes with its compression and approach speed, padded.
-#[derive(Clone, Debug, Default)]
-pub struct NormalSlopes {
-    /// By the compression \[N/m\].
-    pub stiffness: Vec<f64>,
-    /// By the approach speed \[N s/m\].
-    pub damping: Vec<f64>,
-}
-
 /// Number of nodes filled up to full packs.
 pub fn padded(nodes: usize) -> usize {
     nodes.div_ceil(LANES) * LANES
@@ -138,12 +129,10 @@ impl Face {
         self.damping > 0.0 || self.viscosity > 0.0
     }
 
-    /// Slopes of the normal force of each node at the pressure `p` \[Pa\].
-    pub fn slopes_at(&self, p: f64) -> NormalSlopes {
+    /// Contact stiffness of each node at the pressure `p` \[Pa\], padded \[N/m\].
+    pub fn stiffness_at(&self, p: f64) -> Vec<f64> {
         let slope = normal::pressure(&self.contact, normal::compression(&self.contact, p)).1;
-        let damping = self.damping * p + self.viscosity;
-        let each = |per_area: f64| self.area.iter().map(|area| area * per_area).collect();
-        NormalSlopes { stiffness: each(slope), damping: each(damping) }
+        self.area.iter().map(|area| area * slope).collect()
     }
 
     /// Evaluates all nodes into `out`; returns the highest pressure \[Pa\].

@@ -6,5 +6,5 @@ pub mod friction_table;
 pub mod normal;
 pub mod wear;
 
-pub use face::{Face, NormalSlopes, Placed, Traction};
+pub use face::{Face, Placed, Traction};
 pub use friction::{FrictionLaw, Mu};

@@ -3,7 +3,6 @@
 
 use super::dense;
 use super::linear::Linear;
-use crate::contact::NormalSlopes;
 use crate::pack::{Aligned, LANES};
 
 /// For stage equations with coefficient a \[s\] (γh/2 of the step h).
@@ -74,15 +73,15 @@ impl StageMatrices {
             && (linear.base.is_empty() || self.angle == angle)
     }
 
-    /// Computes them (theory eqs. 3.5 to 3.9); `contact` are the slopes of the normal forces
-    /// that the elimination assumes. `false` if the block is numerically singular.
+    /// Computes them (theory eqs. 3.5 to 3.9); `contact_stiffness` \[N/m\] per node is
+    /// what the elimination assumes. `false` if the block is numerically singular.
     pub fn compute(
         &mut self,
         linear: &Linear,
         a: f64,
         stiffness_factor: f64,
         angle: f64,
-        contact: &NormalSlopes,
+        contact_stiffness: &[f64],
     ) -> bool {
         (self.a, self.stiffness_factor, self.angle) = (a, stiffness_factor, angle);
         let kappa = stiffness_factor
@@ -94,7 +93,13 @@ impl StageMatrices {
         self.free_face(linear, a, angle);
         self.delassus(linear, a);
         dense::invert(&mut self.inverse_delassus, 2 * linear.nodes)
-            && self.flat.split(&self.inverse_delassus, a, contact, linear.nodes, linear.stride)
+            && self.flat.split(
+                &self.inverse_delassus,
+                a,
+                contact_stiffness,
+                linear.nodes,
+                linear.stride,
+            )
     }
 
     /// Γ̃, q and N⁻¹.
@@ -175,14 +180,13 @@ impl FlatMatrices {
         &mut self,
         s: &[f64],
         a: f64,
-        contact: &NormalSlopes,
+        contact_stiffness: &[f64],
         n: usize,
         stride: usize,
     ) -> bool {
         let full = |i: usize, j: usize| s[i * 2 * n + j];
-        let slopes = contact.stiffness.iter().zip(&contact.damping);
-        for (slope, (k, d)) in self.normal_slope.iter_mut().zip(slopes) {
-            *slope = a * k + d;
+        for (slope, k) in self.normal_slope.iter_mut().zip(contact_stiffness) {
+            *slope = a * k;
         }
         let [a_inverse, p] = &mut self.room;
         for i in 0..n {

@@ -6,7 +6,7 @@ use super::matrices::StageMatrices;
 use super::stage::Stage;
 use super::state::State;
 use super::tr_bdf2::{TrBdf2, D, W};
-use crate::contact::{Face, NormalSlopes};
+use crate::contact::Face;
 use crate::drive::Segment;
 use crate::error::Fault;
 use crate::pack::Aligned;
@@ -50,7 +50,8 @@ pub struct Statistics {
 #[derive(Clone, Debug)]
 pub struct Integrator {
     settings: Settings,
-    contact: NormalSlopes,
+    /// Contact stiffness of each node that the elimination of the normal velocities assumes \[N/m\].
+    contact_stiffness: Vec<f64>,
     matrices: Vec<StageMatrices>,
     last_h: f64,
     /// The state was set from outside since the last step.
@@ -63,12 +64,12 @@ pub struct Integrator {
 impl Integrator {
     /// An integrator for `linear`.
     ///
-    /// `contact` are the typical slopes of the normal forces:
+    /// `contact_stiffness` \[N/m\] is that of each node under its typical pressure:
     /// the solver converges the faster, the nearer they are.
-    pub fn new(linear: &Linear, settings: Settings, contact: NormalSlopes) -> Self {
+    pub fn new(linear: &Linear, settings: Settings, contact_stiffness: Vec<f64>) -> Self {
         Self {
             settings,
-            contact,
+            contact_stiffness,
             matrices: vec![StageMatrices::new(linear); LEVELS + 1],
             last_h: 0.0,
             fresh: true,
@@ -233,7 +234,7 @@ impl Integrator {
         let angle = segment.angle.at(from + h);
         if !matrices.fit(linear, D * h, state.stiffness_factor, angle) {
             self.statistics.matrices += 1;
-            let contact = &self.contact;
+            let contact = &self.contact_stiffness;
             if !matrices.compute(linear, D * h, state.stiffness_factor, angle, contact) {
                 matrices.a = 0.0;
                 return Err(not_finite("the Delassus matrix"));
