@@ -21,10 +21,6 @@ pub struct Convergence {
 const MAX_ITERATIONS: usize = 150;
 /// Iterations after which the full Newton matrix is used.
 const FLAT_ITERATIONS: usize = 12;
-/// Estimated error of the velocities at which Newton's method stops, as a share of the speed over which friction
-/// changes. A tenth of it moves the independent solutions by less than what a change of friction by a millionth
-/// does; the error that the step control allows is larger by far.
-const TOLERANCE: f64 = 3e-3;
 /// Share of the sliding speed that adds to the smoothing speed where a change is judged: friction changes over
 /// the smoothing speed where a node sticks and over decades of speed where it slips.
 const SLIP_SHARE: f64 = 0.1;
@@ -72,7 +68,7 @@ impl Stage {
             }
             changes = [changes[1], self.change(n, face.smoothing_speed)];
             convergence.change = changes[1] * face.smoothing_speed;
-            let near = self.newton.error_after(iteration, changes) < TOLERANCE;
+            let near = self.newton.error_after(iteration, changes) < self.newton.accuracy;
             self.take_direction(n, motion, near);
             if near {
                 return convergence;

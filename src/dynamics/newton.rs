@@ -21,6 +21,12 @@ const NEAR: std::ops::RangeInclusive<usize> = 6..=12;
 
 /// Iterations before which an inverse for slopes that are only near may serve.
 const CHORDS: usize = 4;
+/// Estimated error of the velocities at which Newton's method stops, as a share of the speed over which friction
+/// changes: least and largest. A tenth of the least moves the independent solutions by less than what a change of
+/// friction by a millionth does.
+const ACCURACY: [f64; 2] = [3e-3, 3e-2];
+/// The same as a share of the error that a step may have.
+const ACCURACY_OF_STEP: f64 = 0.6;
 /// Changes are not taken to shrink more slowly than this.
 const WORST_CONTRACTION: f64 = 0.9;
 /// Ratio of a change to the one before, above which the inverse has to be closer.
@@ -52,6 +58,8 @@ pub(super) struct Newton {
     pub(super) inverse: KeptInverse,
     /// Changes shrink by this factor per iteration, as far as is known \[-\].
     pub(super) contraction: f64,
+    /// Estimated error at which the iteration stops, as a share of the speed over which friction changes \[-\].
+    pub(super) accuracy: f64,
     /// No tangent is steeper than the first of [`STEEPEST_FALL`], in all iterations.
     pub(super) gentle: bool,
     pub(super) compact: Aligned,
@@ -80,6 +88,7 @@ impl Newton {
             matrix: Aligned::zeros(4 * nodes * nodes),
             inverse: KeptInverse::new(nodes, stride),
             contraction: WORST_CONTRACTION,
+            accuracy: ACCURACY[0],
             gentle: false,
             compact: Aligned::zeros(2 * nodes),
             slopes: [row(), row(), row(), row()],
@@ -87,6 +96,11 @@ impl Newton {
             inside: Aligned::padded(&vec![1.0; nodes], stride, 0.0),
             nodes,
         }
+    }
+
+    /// The iteration need not be closer than steps of `tolerance`, the error of a step over the scale of the motion.
+    pub(super) fn serve(&mut self, tolerance: f64) {
+        self.accuracy = (ACCURACY_OF_STEP * tolerance).clamp(ACCURACY[0], ACCURACY[1]);
     }
 
     /// The inverse is made anew before it is used again.

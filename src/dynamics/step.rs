@@ -67,13 +67,15 @@ impl Integrator {
     /// `contact_stiffness` \[N/m\] is that of each node under its typical pressure:
     /// the solver converges the faster, the nearer they are.
     pub fn new(linear: &Linear, settings: Settings, contact_stiffness: Vec<f64>) -> Self {
+        let mut step = TrBdf2::new(linear);
+        step.stage.newton.serve(settings.tolerance);
         Self {
             settings,
             contact_stiffness,
             matrices: vec![StageMatrices::new(linear); LEVELS + 1],
             last_h: 0.0,
             fresh: true,
-            step: TrBdf2::new(linear),
+            step,
             statistics: Statistics::default(),
             ledger: None,
         }
