@@ -29,7 +29,7 @@ LIMIT = 0.5  # % of frequency and mean friction
 DURATION, STEP = 0.03, 20e-6  # s
 CONVERGED = ["solver.max_step=0.3e-6", "solver.tolerance=1e-4"]
 LENGTHS = (15, 45)  # mm
-STEPS = (2.5, 5, 10)  # us, internal, at most
+STEPS = (2.5, 5, 10, 12.5, 15, 17.5)  # us, internal, at most
 TOLERANCES = (5e-3, 0.1)  # of a step: as by default, and so loose that steps are equal
 # What the speed on its own is judged against: no choice of ours is in it but a fine mesh.
 FINE = {15: ["solver.elements_along=20", "solver.elements_up=14", "solver.max_step=0.3e-6"],
@@ -100,6 +100,11 @@ class Bench:
 
     # What the parts share.
 
+    @staticmethod
+    def stepping(step: float, tolerance: float) -> tuple[str, ...]:
+        """Settings of internal steps of at most `step` us; communication steps are twice as long at least."""
+        return (f"step={max(STEP, 2e-6 * step)}", f"solver.max_step={step}e-6", f"solver.tolerance={tolerance}")
+
     def ours(self, length: int, *settings, repeats: int = 20) -> dict:
         return json.loads(call([self.programs["block"], "run", length, f"duration={DURATION}", f"step={STEP}",
                                 f"repeats={repeats}", *settings]))
@@ -140,16 +145,14 @@ class Bench:
     def cheapest(self, length: int) -> tuple[str, ...]:
         """Settings for the peers' equations; peers choose their tolerance the same way."""
         if length not in self.chosen:
-            candidates = [(f"solver.max_step={step}e-6", f"solver.tolerance={tolerance}")
-                          for step in STEPS for tolerance in TOLERANCES]
+            candidates = [self.stepping(step, tolerance) for step in STEPS for tolerance in TOLERANCES]
             self.chosen[length] = self.choose(length, candidates, self.reference(length), "the same equations")
         return self.chosen[length]
 
     def fastest(self, length: int) -> tuple[str, ...]:
         """Settings for a block of its own: contact points are a choice as well as the step."""
         if length not in self.quickest:
-            candidates = [(f"solver.contact_points={points}", f"solver.max_step={step}e-6",
-                           f"solver.tolerance={tolerance}")
+            candidates = [(f"solver.contact_points={points}", *self.stepping(step, tolerance))
                           for points in POINTS[length] for step in STEPS[1:] for tolerance in TOLERANCES]
             self.quickest[length] = self.choose(length, candidates, self.fine_reference(length), "a fine mesh")
         return self.quickest[length]
@@ -186,8 +189,8 @@ class Bench:
                 rate = 0.0
             self.add(f"simulated over wall time, l = {length} mm", rate, goal)
         for name, tolerance in zip(("this model", "this model, equal steps"), TOLERANCES):
-            for step in (1.25, 2.5, 5, 10, 20):
-                run = self.ours(15, f"solver.max_step={step}e-6", f"solver.tolerance={tolerance}")
+            for step in (1.25, 2.5, 5, 10, 15, 20):
+                run = self.ours(15, *self.stepping(step, tolerance))
                 self.point(name, f"{step} us", run, seconds(run), 15)
 
     def point(self, solver, setting, found, wall, length) -> float:
