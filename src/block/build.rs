@@ -1,5 +1,7 @@
 //! Parameters → mesh → reduction → linear part, contact face and solver settings.
 
+use std::path::Path;
+
 use crate::contact::friction::Law;
 use crate::contact::friction_table::Table;
 use crate::contact::Face;
@@ -126,10 +128,8 @@ pub(super) fn integrator(linear: &Linear, face: &Face, params: &Params) -> Integ
 
 /// Reads a measured characteristic: CSV with the columns pressure_pa, speed_m_s, mu.
 fn read_table(path: &str) -> Result<Table, Fault> {
-    let text = std::fs::read_to_string(path).map_err(|e| Fault::File {
-        path: format!("friction.table_file {path:?}"),
-        reason: e.to_string(),
-    })?;
+    let named = format!("friction.table_file {path:?}");
+    let text = std::fs::read_to_string(path).map_err(|e| Fault::file(Path::new(&named), &e))?;
     let mut points = Vec::new();
     let mut problems = Vec::new();
     for (number, line) in text.lines().enumerate().skip(1) {

@@ -84,6 +84,9 @@ pub struct Arguments {
     /// Threads; all cores if not given
     #[arg(long)]
     threads: Option<usize>,
+    /// Print parameters, their uncertainty and what is not told apart as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 /// Runs it.
@@ -113,7 +116,11 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
         report.push_str(&laws::markdown(&tried));
     }
     output::to(Some(&arguments.out.join("report.md")), report.as_bytes())?;
-    eprint!("{report}");
+    if arguments.json {
+        output::json_to_stdout(&report::document(&task, &found))?;
+    } else {
+        eprint!("{report}");
+    }
     if arguments.effects {
         let answers = pool.install(|| explain(&task, &found.params));
         let table = residual::markdown(&answers);

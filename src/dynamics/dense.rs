@@ -5,42 +5,64 @@ use crate::pack::{Pack, LANES};
 /// `out` = Σⱼ `columns`ⱼ xⱼ; `columns` holds column j at `j * out.len()` packs, for every number of the packs `x`.
 #[inline(always)]
 pub fn multiply(out: &mut [Pack], columns: &[Pack], x: &[Pack]) {
+    product(out, columns, [0, out.len()], x);
+}
+
+/// [`multiply`] with the lower halves of columns that are twice as high as `out`.
+#[inline(always)]
+pub fn multiply_below(out: &mut [Pack], columns: &[Pack], x: &[Pack]) {
+    product(out, columns, [out.len(), 2 * out.len()], x);
+}
+
+/// [`multiply`] with the packs of columns from one to the other; columns are as high as the last of them.
+#[inline(always)]
+fn product(out: &mut [Pack], columns: &[Pack], [from, height]: [usize; 2], x: &[Pack]) {
     let mut at = 0;
     while at < out.len() {
-        // As many rows at a time as registers hold while all columns pass.
+        // As many rows at a time as sixteen registers hold while all columns pass; of few rows two sums, so that a product
+        // need not wait for the one before.
         at += match out.len() - at {
-            1 => rows::<1>(out, at, columns, x),
-            2 => rows::<2>(out, at, columns, x),
-            3 | 5 | 6 => rows::<3>(out, at, columns, x),
-            _ => rows::<4>(out, at, columns, x),
+            1 => rows::<1, 2>(out, at, columns, [from, height], x),
+            2 => rows::<2, 2>(out, at, columns, [from, height], x),
+            3 => rows::<3, 2>(out, at, columns, [from, height], x),
+            4 | 8 => rows::<4, 1>(out, at, columns, [from, height], x),
+            5 | 9 | 10 => rows::<5, 1>(out, at, columns, [from, height], x),
+            7 | 13 | 14 => rows::<7, 1>(out, at, columns, [from, height], x),
+            _ => rows::<6, 1>(out, at, columns, [from, height], x),
         };
     }
 }
 
-/// [`multiply`] for the `N` packs of `out` from number `at` on; returns `N`.
-///
-/// Columns go to two sums in turn, so that a product need not wait for the one before.
+/// [`product`] for the `N` packs of `out` from number `at` on; returns `N`. Columns go to `SUMS` sums in turn.
 #[inline(always)]
-fn rows<const N: usize>(out: &mut [Pack], at: usize, columns: &[Pack], x: &[Pack]) -> usize {
-    let height = out.len();
-    let mut sums = [[Pack::default(); N]; 2];
+fn rows<const N: usize, const SUMS: usize>(
+    out: &mut [Pack],
+    at: usize,
+    columns: &[Pack],
+    [from, height]: [usize; 2],
+    x: &[Pack],
+) -> usize {
+    let mut sums = [[Pack::default(); N]; SUMS];
+    let first = from + at;
     // Said once, so that it need not be checked in every column.
-    assert!(at + N <= height, "rows beyond the end of a column");
+    assert!(first + N <= height, "rows beyond the end of a column");
     let mut columns = columns.chunks_exact(height);
     for x in x {
         for pair in 0..LANES / 2 {
             let [Some(even), Some(odd)] = [columns.next(), columns.next()] else { break };
-            let (even, odd) = (&even[at..at + N], &odd[at..at + N]);
+            let (even, odd) = (&even[first..first + N], &odd[first..first + N]);
             let (a, b) = (Pack::splat(x.0[2 * pair]), Pack::splat(x.0[2 * pair + 1]));
             for n in 0..N {
                 sums[0][n] = a.mul_add(even[n], sums[0][n]);
-                sums[1][n] = b.mul_add(odd[n], sums[1][n]);
+            }
+            for n in 0..N {
+                sums[SUMS - 1][n] = b.mul_add(odd[n], sums[SUMS - 1][n]);
             }
         }
     }
     let out = &mut out[at..at + N];
     for n in 0..N {
-        out[n] = sums[0][n] + sums[1][n];
+        out[n] = if SUMS == 2 { sums[0][n] + sums[SUMS - 1][n] } else { sums[0][n] };
     }
     N
 }

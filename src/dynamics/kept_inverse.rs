@@ -5,9 +5,27 @@ use super::matrices::{columns, FlatMatrices};
 use super::{dense, gauss_jordan};
 use crate::pack::{Aligned, Pack, LANES};
 
-/// Change of a slope, as a share of what resists at the node, up to which corrections serve: as a rule, and where
-/// convergence is slow.
-const SAME_SLOPE: [f64; 2] = [0.3, 0.03];
+/// How closely an inverse has to fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Closeness {
+    /// Convergence is slow.
+    pub(super) slow: bool,
+    /// Newton's method may stop early.
+    pub(super) early: bool,
+}
+
+impl Closeness {
+    /// Change of a slope, as a share of what resists at the node, up to which corrections serve.
+    fn same_slope(self) -> f64 {
+        match (self.early, self.slow) {
+            (false, false) => 0.3,
+            (false, true) => 0.03,
+            (true, false) => 0.5,
+            (true, true) => 0.1,
+        }
+    }
+}
+
 /// Corrections for what slopes have changed: each multiplies the error by that share.
 const CORRECTIONS: usize = 2;
 /// A share of the nodes, one in this many, may be mended; with more, an inverse made anew costs no more.
@@ -75,7 +93,7 @@ impl KeptInverse {
         Some(from)
     }
 
-    /// Makes the inverse fit for `slope` and `coupling`, closely if `close`; `false` if K is not positive definite.
+    /// Makes the inverse fit for `slope` and `coupling`; `false` if K is not positive definite.
     #[inline(always)]
     pub(super) fn fit(
         &mut self,
@@ -83,10 +101,10 @@ impl KeptInverse {
         m: &FlatMatrices,
         slope: &[Pack],
         coupling: &[Pack],
-        close: bool,
+        closeness: Closeness,
     ) -> bool {
         self.exact = false;
-        if self.known && self.mend(n, m, slope, SAME_SLOPE[usize::from(close)]) {
+        if self.known && self.mend(n, m, slope, closeness.same_slope()) {
             return true;
         }
         self.slope.packs_mut()[..n].copy_from_slice(&slope[..n]);
@@ -170,6 +188,8 @@ impl KeptInverse {
     }
 
     /// x = K'⁻¹ `residual` and [B; Pᵀ] x for slopes K' that may have changed: x ← K⁻¹ (`residual` − (K' − K) x).
+    ///
+    /// B x is what is left of K x, which is known.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
     pub(super) fn solve(
@@ -185,16 +205,22 @@ impl KeptInverse {
         let (columns, by_tangential) = (self.columns.packs(), m.by_tangential.packs());
         let (kept_slope, kept_coupling) = (&self.slope.packs()[..n], &self.coupling.packs()[..n]);
         let left = &mut self.room.packs_mut()[..n];
-        dense::multiply(x, columns, residual);
-        dense::multiply(of_x, by_tangential, x);
+        left.copy_from_slice(&residual[..n]);
+        let (b_x, p_x) = of_x[..2 * n].split_at_mut(n);
         let corrections = if self.exact { 0 } else { CORRECTIONS };
-        for _ in 0..corrections {
+        for correction in 0..=corrections {
+            dense::multiply(x, columns, left);
+            dense::multiply_below(p_x, by_tangential, x);
+            if correction == corrections {
+                break;
+            }
             for k in 0..n {
                 let by_slope = (slope[k] - kept_slope[k]).mul_add(-x[k], residual[k]);
-                left[k] = (coupling[k] - kept_coupling[k]).mul_add(of_x[n + k], by_slope);
+                left[k] = (coupling[k] - kept_coupling[k]).mul_add(p_x[k], by_slope);
             }
-            dense::multiply(x, columns, left);
-            dense::multiply(of_x, by_tangential, x);
+        }
+        for k in 0..n {
+            b_x[k] = kept_coupling[k].mul_add(p_x[k], kept_slope[k].mul_add(-x[k], left[k]));
         }
     }
 }
@@ -224,10 +250,11 @@ mod tests {
         let mut inverse = KeptInverse::new(nodes, nodes);
         let old = |i: usize| 0.1 * i as f64;
         let (slope, coupling) = (packed(&old), packed(&|i| 0.3 - 0.05 * i as f64));
-        assert!(inverse.fit(n, &m, &slope, &coupling, false));
+        let loosely = Closeness { slow: false, early: false };
+        assert!(inverse.fit(n, &m, &slope, &coupling, loosely));
         let new = |i: usize| if i % 4 == 1 { 5.0 } else { 1.02 * old(i) };
         let (slope, coupling) = (packed(&new), packed(&|i| 0.306 - 0.051 * i as f64));
-        assert!(inverse.fit(n, &m, &slope, &coupling, false));
+        assert!(inverse.fit(n, &m, &slope, &coupling, loosely));
         assert_eq!(inverse.mended, 2.0);
         let residual = packed(&|i| (i as f64).cos());
         let (mut x, mut of_x) = ([Pack::default()], [Pack::default(); 2]);
@@ -237,6 +264,11 @@ mod tests {
             let sum: f64 = (0..nodes).map(|j| row(j) * x[0].0[j]).sum();
             let off = sum + slope[0].0[i] * x[0].0[i] - residual[0].0[i];
             assert!(off.abs() < 1e-5, "row {i}: {off}");
+            // B x and Pᵀ x, of which the first is found without a product.
+            for (found, matrix) in of_x.iter().zip([&b as &dyn Fn(usize, usize) -> f64, &p_t]) {
+                let sum: f64 = (0..nodes).map(|j| matrix(i, j) * x[0].0[j]).sum();
+                assert!((found.0[i] - sum).abs() < 1e-12, "row {i}: {} for {sum}", found.0[i]);
+            }
         }
     }
 }

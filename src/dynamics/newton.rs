@@ -2,7 +2,7 @@
 //! share.
 
 use super::dense;
-use super::kept_inverse::KeptInverse;
+use super::kept_inverse::{Closeness, KeptInverse};
 use super::linear::Linear;
 use super::matrices::FlatMatrices;
 use super::stage::Stage;
@@ -157,17 +157,18 @@ impl Newton {
         iteration: usize,
         changes: Changes,
     ) -> bool {
-        let close = iteration >= CHORDS || changes[1] > SLOW * changes[0];
+        let slow = iteration >= CHORDS || changes[1] > SLOW * changes[0];
+        let closeness = Closeness { slow, early: self.accuracy > ACCURACY[0] };
         let near = self.near(iteration, changes);
         self.follow(n, m, t, STEEPEST_FALL[usize::from(near)]);
         let coupling = t.coupling.packs();
-        if self.inverse.fit(n, m, self.followed.packs(), coupling, close) {
+        if self.inverse.fit(n, m, self.followed.packs(), coupling, closeness) {
             return true;
         }
         // Many nodes that fall together resist less than each alone.
         self.follow(n, m, t, STEEPEST_FALL[0]);
         self.inverse.forget();
-        near && self.inverse.fit(n, m, self.followed.packs(), coupling, true)
+        near && self.inverse.fit(n, m, self.followed.packs(), coupling, closeness)
     }
 
     /// Slopes but for a fall steeper than `steepest`, as a share of the node's resistance: the tangent of a

@@ -106,6 +106,34 @@ fn what_is_printed_for_people_comes_as_json_too() {
 }
 
 #[test]
+fn an_identification_comes_as_json() {
+    // One column, solved coarsely, no search: only what the table pins down at the start.
+    let folder = Folder::new("identify-json");
+    let text = folder.fine(&[
+        "identify",
+        "--columns",
+        "h6l15",
+        "--evaluations",
+        "0",
+        "--rounds",
+        "0",
+        "--coarse",
+        "--free",
+        "friction.mu_drop,contact.depth",
+        "--out",
+        "out",
+        "--json",
+    ]);
+    let told: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(told["columns"], serde_json::json!(["h6l15"]));
+    let depth = &told["parameters"][1];
+    assert_eq!(depth["parameter"], "contact.depth");
+    assert!(depth["from"].as_f64().unwrap() < depth["value"].as_f64().unwrap());
+    assert_eq!(told["directions"].as_array().unwrap().len(), 2);
+    assert!(told["directions"][0]["components"]["friction.mu_drop"].is_number());
+}
+
+#[test]
 fn a_gap_check_comes_as_json_though_a_campaign_cannot_be_used() {
     let folder = Folder::new("gap-check");
     for name in ["campaigns/broken", "out"] {

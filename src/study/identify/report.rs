@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use serde_json::{json, Map, Value};
+
 use super::run::{Identified, Task};
 use super::space::{get, Unknown};
 
@@ -10,6 +12,52 @@ const NAMED: f64 = 0.3;
 /// Standard deviation, in unit intervals, from which on a direction is not determined: a uniform
 /// distribution over the whole range has 0.29.
 const UNDETERMINED: f64 = 0.15;
+
+/// A parameter and how well the data pin it down.
+struct Row {
+    name: &'static str,
+    /// SI.
+    value: f64,
+    /// One standard deviation down and up, SI.
+    within: [f64; 2],
+    /// Standard deviation as a share of the range of the search \[-\].
+    deviation: f64,
+}
+
+fn rows<'a>(task: &'a Task, found: &'a Identified) -> impl Iterator<Item = Row> + 'a {
+    let places = found.local.x.iter().zip(found.local.deviations());
+    task.unknowns.iter().zip(places).map(|(unknown, (x, deviation))| Row {
+        name: unknown.name,
+        value: get(&found.params, unknown.name),
+        within: [x - deviation, x + deviation].map(|x| unknown.value(x)),
+        deviation,
+    })
+}
+
+/// All of it for machines: cost, parameters and directions.
+pub fn document(task: &Task, found: &Identified) -> Value {
+    let columns: Vec<&str> = task.columns.iter().map(|c| c.name).collect();
+    let parameters: Vec<Value> = rows(task, found)
+        .map(|row| {
+            let [from, to] = row.within;
+            json!({ "parameter": row.name, "value": row.value, "from": from, "to": to,
+                    "share_of_range": row.deviation })
+        })
+        .collect();
+    let names = || task.unknowns.iter().map(|unknown| unknown.name);
+    let directions: Vec<Value> = (found.local.directions().iter())
+        .map(|direction| {
+            let components: Map<String, Value> = names()
+                .map(String::from)
+                .zip(direction.components.iter().map(|c| json!(c)))
+                .collect();
+            json!({ "pinned_down": direction.deviation < UNDETERMINED,
+                    "deviation": direction.deviation, "components": components })
+        })
+        .collect();
+    json!({ "columns": columns, "cost": found.cost, "scatter": found.local.variance().sqrt(),
+            "parameters": parameters, "directions": directions })
+}
 
 /// The report as Markdown.
 pub fn markdown(task: &Task, found: &Identified) -> String {
@@ -24,18 +72,9 @@ pub fn markdown(task: &Task, found: &Identified) -> String {
         100.0 * found.local.variance().sqrt()
     );
     out.push_str("| parameter | value | from | to | share of the range |\n|---|---|---|---|---|\n");
-    for ((unknown, x), deviation) in
-        task.unknowns.iter().zip(&found.local.x).zip(found.local.deviations())
-    {
-        let _ = writeln!(
-            out,
-            "| `{}` | {:.4e} | {:.4e} | {:.4e} | {:.1} % |",
-            unknown.name,
-            get(&found.params, unknown.name),
-            unknown.value(x - deviation),
-            unknown.value(x + deviation),
-            100.0 * deviation
-        );
+    for Row { name, value, within: [from, to], deviation } in rows(task, found) {
+        let share = 100.0 * deviation;
+        let _ = writeln!(out, "| `{name}` | {value:.4e} | {from:.4e} | {to:.4e} | {share:.1} % |");
     }
     out.push_str("\n## Directions of the parameters, the best determined first\n\n");
     out.push_str("Components in unit intervals of the search ranges.\n\n");
@@ -55,12 +94,8 @@ pub fn markdown(task: &Task, found: &Identified) -> String {
 /// The parameters with their uncertainty as CSV: one standard deviation down and up.
 pub fn parameters_csv(task: &Task, found: &Identified) -> String {
     let mut out = String::from("parameter,value,from,to,share_of_range\n");
-    for ((unknown, x), deviation) in
-        task.unknowns.iter().zip(&found.local.x).zip(found.local.deviations())
-    {
-        let value = get(&found.params, unknown.name);
-        let [from, to] = [x - deviation, x + deviation].map(|x| unknown.value(x));
-        let _ = writeln!(out, "{},{value:.6e},{from:.3e},{to:.3e},{deviation:.3}", unknown.name);
+    for Row { name, value, within: [from, to], deviation } in rows(task, found) {
+        let _ = writeln!(out, "{name},{value:.6e},{from:.3e},{to:.3e},{deviation:.3}");
     }
     out
 }
