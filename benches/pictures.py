@@ -19,11 +19,12 @@ def work_precision(folder: Path, points: list[dict], limit: float) -> None:
     figure, axes = plt.subplots(figsize=(7.2, 4.6), layout="constrained")
     for at, solver in enumerate(dict.fromkeys(p["solver"] for p in points)):
         ours = solver.startswith("this model")
+        line = "--" if solver == "this model, equal steps" else "-"
         own = [p for p in points if p["solver"] == solver]
         # An error of nothing is below what two runs can tell apart.
         errors = [max(p["error_percent"], 1e-4) for p in own]
         axes.loglog(errors, [p["seconds_per_ms"] for p in own], MARKS[at % len(MARKS)],
-                    color="black" if ours else COLOURS[(at - 2) % len(COLOURS)], linestyle="-" if at != 1 else "--",
+                    color="black" if ours else COLOURS[(at - 2) % len(COLOURS)], linestyle=line,
                     linewidth=2.5 if ours else 1.5, label=solver)
     axes.axvline(limit, color="grey", linestyle="--")
     axes.annotate(" 0.5 %", (limit, 1), xycoords=("data", "axes fraction"), va="top")
