@@ -5,6 +5,7 @@ mod memory;
 mod observe;
 mod reductions;
 mod signals;
+mod stations;
 mod strike;
 
 pub use build::Shape;
@@ -20,7 +21,7 @@ use crate::error::{Fault, Problem};
 use crate::params::{check, table, Params, Variability, Wear};
 use crate::reduction::Reduction;
 use memory::Memory;
-use observe::Stations;
+use stations::Stations;
 use std::sync::Arc;
 
 /// A tread block: reduced finite elements on a rough road.

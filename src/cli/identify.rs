@@ -84,7 +84,7 @@ pub struct Arguments {
     /// Threads; all cores if not given
     #[arg(long)]
     threads: Option<usize>,
-    /// Print parameters, their uncertainty and what is not told apart as JSON
+    /// Print parameters, their uncertainty, what is not told apart, laws and effects that were tried as JSON
     #[arg(long)]
     json: bool,
 }
@@ -102,6 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
     })?;
     write(&best, &found.params)?;
     let mut report = report::markdown(&task, &found);
+    let mut document = report::document(&task, &found);
     for (name, text) in [
         ("parameters.csv", report::parameters_csv(&task, &found)),
         ("directions.csv", report::directions_csv(&task, &found)),
@@ -114,18 +115,23 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
         })?;
         output::to(Some(&arguments.out.join("laws.csv")), laws::csv(&tried).as_bytes())?;
         report.push_str(&laws::markdown(&tried));
+        document["laws"] = laws::json(&tried);
     }
     output::to(Some(&arguments.out.join("report.md")), report.as_bytes())?;
-    if arguments.json {
-        output::json_to_stdout(&report::document(&task, &found))?;
-    } else {
+    if !arguments.json {
         eprint!("{report}");
     }
     if arguments.effects {
         let answers = pool.install(|| explain(&task, &found.params));
         let table = residual::markdown(&answers);
         output::to(Some(&arguments.out.join("residual.md")), table.as_bytes())?;
-        eprint!("{table}");
+        document["effects"] = residual::json(&answers);
+        if !arguments.json {
+            eprint!("{table}");
+        }
+    }
+    if arguments.json {
+        output::json_to_stdout(&document)?;
     }
     Ok(Done::Fine)
 }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use serde_json::{json, Value};
+
 use super::identified;
 use super::identify::objective::{compare, Compared, Fineness};
 use super::margin;
@@ -54,6 +56,12 @@ impl TableOne {
     /// Cells that oscillate where the paper's are silent, or the other way round.
     pub fn disagreements(&self) -> Vec<&Compared> {
         self.cells.iter().filter(|c| !c.agrees()).collect()
+    }
+
+    /// Median and largest error as shares, and the places of the cells that disagree, as JSON.
+    pub fn figures(&self) -> Value {
+        let wrong: Vec<String> = self.disagreements().iter().map(|c| c.place()).collect();
+        json!({ "median_error": self.median_error(), "max_error": self.max_error(), "wrong": wrong })
     }
 
     fn errors(&self) -> Vec<f64> {

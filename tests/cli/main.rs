@@ -120,11 +120,15 @@ fn an_identification_comes_as_json() {
         "--coarse",
         "--free",
         "friction.mu_drop,contact.depth",
+        "--laws",
         "--out",
         "out",
         "--json",
     ]);
     let told: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let laws = told["laws"].as_array().unwrap();
+    assert_eq!(laws.len(), 4);
+    assert!(laws.iter().all(|law| law["end"]["median_error"].is_number()), "{laws:?}");
     assert_eq!(told["columns"], serde_json::json!(["h6l15"]));
     let depth = &told["parameters"][1];
     assert_eq!(depth["parameter"], "contact.depth");

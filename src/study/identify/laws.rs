@@ -4,6 +4,7 @@
 use std::fmt::Write;
 
 use nalgebra::{Matrix2, Vector2};
+use serde_json::{json, Value};
 
 use super::objective::{Fineness, Problem};
 use super::run::{self, Identified, Task};
@@ -202,6 +203,17 @@ pub fn csv(tried: &[Tried]) -> String {
         );
     }
     out
+}
+
+/// The comparison as JSON, an object per law with the columns of [`csv`].
+pub fn json(tried: &[Tried]) -> Value {
+    let of = |t: &Tried| {
+        json!({
+            "law": t.law, "unknowns": t.unknowns, "rms": t.rms, "cost": t.cost,
+            "first": t.first.figures(), "end": t.table.figures(),
+        })
+    };
+    tried.iter().map(of).collect()
 }
 
 /// The comparison as a section of the report.

@@ -3,6 +3,8 @@
 
 use std::fmt::Write;
 
+use serde_json::{json, Map, Value};
+
 use super::gauss_newton::improve;
 use super::objective::{Fineness, Problem};
 use super::space::{get, places, Unknown};
@@ -146,4 +148,14 @@ pub fn markdown(answers: &[Explained]) -> String {
         );
     }
     out
+}
+
+/// The same as JSON, an object per effect.
+pub fn json(answers: &[Explained]) -> Value {
+    let of = |e: &Explained| {
+        let values: Map<String, Value> =
+            e.values.iter().map(|(name, value)| (name.to_string(), json!(value))).collect();
+        json!({ "effect": e.name, "cost": e.cost, "table": e.table.figures(), "parameters": values })
+    };
+    answers.iter().map(of).collect()
 }
