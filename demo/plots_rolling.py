@@ -117,12 +117,12 @@ def run_in_edge(run, times, out):
     panels[2].plot(s, run["contact.force.z"], color=VERMILION, label="normal")
     panels[2].set_ylabel("force of the road [N]")
     panels[2].set_xlabel("contact coordinate: belt travel from the middle of the patch [mm]")
-    panels[2].legend(loc="upper left")
+    panels[2].legend(loc="upper right")
     for phase, time in times.items():
         at = np.interp(time, run["time"], s)
         for panel in panels:
             panel.axvline(at, color=GREY, linewidth=0.8, linestyle="--")
-        before = phase == "sticking"  # sliding follows it at once: its label goes to the other side
+        before = phase in ("run-in", "sticking")  # the next one follows at once
         panels[1].annotate(phase, (at, 0.97), xycoords=("data", "axes fraction"), fontsize=9,
                            xytext=(-3 if before else 3, 0), textcoords="offset points",
                            ha="right" if before else "left", va="top",

@@ -1,6 +1,7 @@
 //! One run of a campaign with given parameters, as the rig would have measured it.
 
 use super::campaign::{Plan, Record, RunKind, RunSpec};
+use super::ripple::Ripple;
 use crate::block::{Shape, TreadBlock};
 use crate::drive::{Pose, Segment};
 use crate::error::Fault;
@@ -87,9 +88,15 @@ pub struct Simulator {
     plan: Plan,
     reduction: Arc<Reduction>,
     fineness: Fineness,
+    ripple: Ripple,
 }
 
 impl Simulator {
+    /// The same rig with a ripple of its drives.
+    pub(super) fn rippled(self, ripple: Ripple) -> Self {
+        Self { ripple, ..self }
+    }
+
     /// For the block of `plan`.
     ///
     /// # Errors
@@ -106,7 +113,7 @@ impl Simulator {
         let mut params = nominal(plan);
         cut(&mut params, fineness);
         let reduction = Arc::new(Shape::of(&params).reduce()?);
-        Ok(Self { plan: plan.clone(), reduction, fineness })
+        Ok(Self { plan: plan.clone(), reduction, fineness, ripple: Ripple::default() })
     }
 
     /// The run as the rig would have measured it up to `until` \[s\], without noise, at the campaign's
@@ -152,7 +159,11 @@ impl Simulator {
         sampler: &mut Sampler,
     ) -> Result<(), Fault> {
         let step = 1.0 / self.plan.sampling_rate;
-        let scenario = Scenario::Slide(motion(&self.plan, spec));
+        let slide = motion(&self.plan, spec);
+        if self.ripple != Ripple::default() {
+            return self.slide_rippled(block, &slide, rows(until, step), sampler);
+        }
+        let scenario = Scenario::Slide(slide);
         // Whole samples only: a scenario would end with a shorter step.
         let duration = rows(until, step) as f64 * step;
         let plan = scenario::Plan { step, duration, inputs: Inputs::Exact };
@@ -163,6 +174,24 @@ impl Simulator {
             sampler.push(t, block);
             Ok(())
         })
+    }
+
+    fn slide_rippled(
+        &self,
+        block: &mut TreadBlock,
+        slide: &Slide,
+        rows: usize,
+        sampler: &mut Sampler,
+    ) -> Result<(), Fault> {
+        let step = 1.0 / self.plan.sampling_rate;
+        block.initialize(0.0, Pose { load: slide.load, ..Pose::default() })?;
+        sampler.push(0.0, block);
+        for k in 0..rows {
+            let t = k as f64 * step;
+            block.advance(step, &self.ripple.segment(slide, t, step))?;
+            sampler.push(t + step, block);
+        }
+        Ok(())
     }
 }
 

@@ -9,6 +9,7 @@ use super::json::changes;
 use super::noise::Noise;
 use super::predict;
 use super::problem::Coordinate;
+use super::ripple::Ripple;
 use super::simulate::{nominal, set, Simulator, DATASHEET, FINE};
 use crate::effects::{fit_specs, Spread};
 use crate::error::Fault;
@@ -41,14 +42,20 @@ enum Truth {
     CrossTalk,
     /// The zero of the friction channel drifts in every run; no effect of the list.
     Drift,
+    /// The drive of the road does not hold its speed; no effect of the list.
+    SpeedRipple,
+    /// The load is not constant; no effect of the list.
+    LoadRipple,
 }
 
-/// Sensors that are wrong, in turn.
-const OUTSIDE: [(Truth, &str); 4] = [
+/// Sensors and drives that are wrong, in turn.
+const OUTSIDE: [(Truth, &str); 6] = [
     (Truth::Gain, "x_gain"),
     (Truth::Clock, "x_clock"),
     (Truth::CrossTalk, "x_cross_talk"),
     (Truth::Drift, "x_drift"),
+    (Truth::SpeedRipple, "x_speed_ripple"),
+    (Truth::LoadRipple, "x_load_ripple"),
 ];
 
 /// Of eight campaigns one has no effect, one has two, one an effect that is not in the list.
@@ -109,7 +116,7 @@ fn one(
     let severity = SEVERITY[0] + (SEVERITY[1] - SEVERITY[0]) * noise.uniform();
     let mut label = add(truth, severity, &mut params, &mut noise);
     label["parameters"] = changes(&params, &nominal(&plan));
-    let simulator = Simulator::cut(&plan, FINE)?;
+    let simulator = Simulator::cut(&plan, FINE)?.rippled(ripple(truth, severity));
     let folder = out.join(&id);
     for spec in &plan.runs {
         let mut record = simulator.run(&params, spec, spec.duration_s)?;
@@ -181,6 +188,16 @@ fn add_effect(effect: usize, severity: f64, params: &mut Params, noise: &mut Noi
     spec.apply(form, &values, params);
 }
 
+/// What is wrong with the drives.
+fn ripple(truth: Truth, severity: f64) -> Ripple {
+    let share = 0.04 * (1.0 + severity);
+    match truth {
+        Truth::SpeedRipple => Ripple { speed: share, load: 0.0 },
+        Truth::LoadRipple => Ripple { speed: 0.0, load: share },
+        _ => Ripple::default(),
+    }
+}
+
 /// What is wrong with the measurement itself.
 fn distort(truth: Truth, severity: f64, record: &mut Record) {
     let share = 1.0 + 0.04 * (1.0 + severity);
@@ -207,7 +224,7 @@ fn distort(truth: Truth, severity: f64, record: &mut Record) {
                 column.iter_mut().enumerate().for_each(|(i, f)| *f += full * i as f64 / count);
             }
         }
-        Truth::None | Truth::Effect(_) | Truth::Pair(_) => {}
+        _ => {}
     }
 }
 

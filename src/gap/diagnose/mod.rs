@@ -16,6 +16,7 @@ use super::held_out;
 use super::hypotheses::{self, Fits, Method};
 use super::polish;
 use super::problem::{Bench, Look};
+use super::second_look;
 use super::symmetry;
 use super::where_::{self, Cell};
 use crate::error::{Fault, Problem};
@@ -116,7 +117,7 @@ pub fn diagnose(
     let (mut gap, mut closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
     if settings.hold_out {
         let before = weighed;
-        weighed = decide::second_look(&fits, &before, &closed);
+        weighed = second_look::second_look(&fits, &before, &closed);
         if weighed.iter().zip(&before).any(|(now, then)| now.cause != then.cause) {
             (gap, closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
         }
