@@ -9,6 +9,16 @@ const MOST_LINES: usize = 300;
 /// Files that are longer, with the length that they may have; the aim is to split them.
 const LONGER: &[(&str, usize)] = &[];
 
+/// Most lines of a function.
+const MOST_LINES_OF_FUNCTION: usize = 55;
+
+/// Functions that are longer, by file and name, with the length that they may have; the aim is to split them.
+const LONGER_FUNCTIONS: &[(&str, &str, usize)] = &[
+    ("src/dynamics/equilibrium.rs", "settle", 56),
+    ("src/dynamics/newton.rs", "flat_direction", 58),
+    ("src/dynamics/turned.rs", "full_direction", 63),
+];
+
 fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
@@ -80,6 +90,32 @@ fn imports(code: &str) -> Vec<String> {
     found
 }
 
+/// Name of the function whose head begins in this line.
+fn function_name(line: &str) -> Option<&str> {
+    let mut words = line.split(['(', '<', ' ']).filter(|word| !word.is_empty());
+    let modifier = |word: &&str| {
+        ["pub", "crate)", "super)", "const", "unsafe", "extern", "\"C\""].contains(word)
+    };
+    words.by_ref().find(|word| !modifier(word)).filter(|word| *word == "fn")?;
+    words.next()
+}
+
+/// Name and number of lines of every function, from its head to the brace that closes it.
+fn functions(code: &str) -> Vec<(&str, usize)> {
+    let lines: Vec<&str> = code.lines().collect();
+    let mut found = Vec::new();
+    for (at, line) in lines.iter().enumerate() {
+        let Some(name) = function_name(line) else { continue };
+        // The style of rustfmt: head, end of the arguments and closing brace are indented alike.
+        let indent = &line[..line.len() - line.trim_start().len()];
+        let alike =
+            |other: &str| other.strip_prefix(indent).is_some_and(|rest| !rest.starts_with(' '));
+        let end = lines[at..].iter().position(|other| alike(other) && other.ends_with(['}', ';']));
+        found.extend(end.map(|end| (name, end + 1)));
+    }
+    found
+}
+
 #[test]
 fn every_path_that_the_architecture_names_exists() {
     let text = architecture();
@@ -138,5 +174,23 @@ fn files_stay_small_and_code_does_not_unwrap() {
             }
         }
     }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn functions_fit_on_a_screen() {
+    let (mut wrong, mut seen) = (Vec::new(), 0);
+    for path in sources(&root().join("src")) {
+        let file = path.strip_prefix(root()).unwrap().display().to_string();
+        for (name, lines) in functions(&code(&path)) {
+            seen += 1;
+            let longer = LONGER_FUNCTIONS.iter().find(|(f, n, _)| *f == file && *n == name);
+            let most = longer.map_or(MOST_LINES_OF_FUNCTION, |(_, _, lines)| *lines);
+            if lines > most {
+                wrong.push(format!("{file}: {name} has {lines} lines, more than {most}"));
+            }
+        }
+    }
+    assert!(seen > 1000, "only {seen} functions of src could be read");
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }

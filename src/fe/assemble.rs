@@ -36,11 +36,6 @@ pub fn assemble(mesh: &Mesh, poisson_ratio: f64, plane: Plane) -> FullModel {
     let elasticity = material::elasticity(poisson_ratio, plane);
     let mut stiffness = CooMatrix::new(count, count);
     let mut mass = CooMatrix::new(count, count);
-    let height = mesh.z[mesh.z.len() - 1];
-    let rigid_at = |node: usize, axis: usize| {
-        let [x, z] = mesh.position(node);
-        [[1.0, 0.0], [0.0, 1.0], [z - height, -x]].map(|r: [f64; 2]| r[axis])
-    };
     let mut coupling = [vec![0.0; count], vec![0.0; count], vec![0.0; count]];
     let (along, up) = mesh.elements();
     for ex in 0..along {
@@ -54,7 +49,7 @@ pub fn assemble(mesh: &Mesh, poisson_ratio: f64, plane: Plane) -> FullModel {
                 let Some(row) = dof[2 * nodes[a / 2] + a % 2] else { continue };
                 for b in 0..element::DOFS {
                     let (node, axis) = (nodes[b / 2], b % 2);
-                    for (sum, r) in coupling.iter_mut().zip(rigid_at(node, axis)) {
+                    for (sum, r) in coupling.iter_mut().zip(rigid_at(mesh, node, axis)) {
                         sum[row] += m[(a, b)] * r;
                     }
                     if let Some(column) = dof[2 * node + axis] {
@@ -65,21 +60,27 @@ pub fn assemble(mesh: &Mesh, poisson_ratio: f64, plane: Plane) -> FullModel {
             }
         }
     }
-    let mut rigid = [vec![0.0; count], vec![0.0; count], vec![0.0; count]];
-    for (at, free) in dof.iter().enumerate() {
-        if let Some(row) = free {
-            for (mode, r) in rigid.iter_mut().zip(rigid_at(at / 2, at % 2)) {
-                mode[*row] = r;
-            }
-        }
-    }
     FullModel {
         stiffness: CscMatrix::from(&stiffness),
         mass: CscMatrix::from(&mass),
-        rigid,
+        rigid: rigid_motions(mesh, &dof),
         rigid_coupling: coupling,
         dof,
     }
+}
+
+/// Rigid motions of the free degrees of freedom, which are numbered in the order of the nodes.
+fn rigid_motions(mesh: &Mesh, dof: &[Option<usize>]) -> [Vec<f64>; 3] {
+    let free = (0..dof.len()).filter(|at| dof[*at].is_some());
+    let motions: Vec<[f64; 3]> = free.map(|at| rigid_at(mesh, at / 2, at % 2)).collect();
+    std::array::from_fn(|mode| motions.iter().map(|r| r[mode]).collect())
+}
+
+/// How far each rigid motion takes a node along an axis; rotation is about the middle of the clamped face.
+fn rigid_at(mesh: &Mesh, node: usize, axis: usize) -> [f64; 3] {
+    let height = mesh.z[mesh.z.len() - 1];
+    let [x, z] = mesh.position(node);
+    [[1.0, 0.0], [0.0, 1.0], [z - height, -x]].map(|r: [f64; 2]| r[axis])
 }
 
 fn number(mesh: &Mesh) -> Vec<Option<usize>> {

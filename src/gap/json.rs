@@ -15,68 +15,113 @@ pub const SCHEMA: &str = "tread-block-diagnosis/1";
 
 /// The document.
 pub fn document(d: &Diagnosis) -> Json {
-    let from_defaults = |params: &Params| changes(params, &Params::default());
-    let bench = &d.bench;
-    let rounded = |x: f64| (x * 1e6).round() / 1e6;
-    let best = diagnose::best_cause(&d.weighed);
     json!({
         "schema": SCHEMA,
         "campaign": d.campaign.plan.id,
         "decision": decision(d),
         "hypotheses": hypotheses_json(d),
-        "where": d.cells.iter().map(|c| json!({
-            "run": c.run, "channel": c.channel, "phase": c.phase, "band_hz": c.band,
-            "gap": rounded(c.gap), "significant": c.significant,
-        })).collect::<Vec<_>>(),
+        "where": where_json(d),
         "modules": d.modules.iter().map(|(name, share)| json!({"name": name, "share": share}))
             .collect::<Vec<_>>(),
-        "gap": {
-            "floor": 1,
-            "nominal": d.gap.nominal,
-            "recalibrated": d.gap.recalibrated,
-            "with_effect": d.gap.with_effect,
-            "sham_closed_fraction": d.gap.sham,
-            "closed_fraction": {
-                "value": d.gap.closed[0], "lo": d.gap.closed[1], "hi": d.gap.closed[2],
-            },
-            "held_out": d.gap.held_out.iter().map(|r| bench.runs[*r].file.clone())
-                .collect::<Vec<_>>(),
-        },
+        "gap": gap_json(d),
         "indistinguishable": d.indistinguishable,
         "detectable": d.detectable.iter()
             .map(|(effect, a)| json!({"effect": effect, "min_severity": a})).collect::<Vec<_>>(),
-        "next_experiment": d.experiments.iter().map(|e| json!({
-            "name": e.run.file,
-            "kind": "sliding",
-            "road_speed_m_s": e.run.road_speed_m_s,
-            "mean_pressure_pa": e.run.mean_pressure_pa,
-            "dwell_s": e.run.dwell_s,
-            "duration_s": e.run.duration_s,
-            "between": e.between,
-            "expected_gain_nats": e.gain,
-        })).collect::<Vec<_>>(),
-        "models": {
-            "nominal": from_defaults(&nominal(&bench.plan)),
-            "recalibrated": from_defaults(&bench.params(&[], &d.fits.base.fit.x)),
-            "with-effect": from_defaults(&params_of(d, &best)),
-            "with-effect_effects": decide::names(bench, &d.fits, &best),
-        },
+        "next_experiment": experiments_json(d),
+        "models": models_json(d),
         "recalibration": parameters(d, &Cause::None),
-        "rules": d.fits.findings.iter().map(|f| json!({
-            "rule": format!("{:?}", f.rule).to_lowercase(), "value": f.value, "broken": f.broken,
-            "text": f.text,
-        })).collect::<Vec<_>>(),
+        "rules": rules_json(d),
         "flags": diagnose::flags(d).iter().map(Problem::to_string).collect::<Vec<_>>(),
-        "provenance": {
-            "data_hash": format!("{:016x}", d.campaign.hash()),
-            "runs": d.campaign.runs.iter()
-                .map(|r| json!({"file": r.spec.file, "hash": format!("{:016x}", r.hash)}))
-                .collect::<Vec<_>>(),
-            "seed": d.settings.seed,
-            "version": env!("CARGO_PKG_VERSION"),
-            "simulations": d.simulations(),
-            "seconds": (d.seconds * 10.0).round() / 10.0,
-        },
+        "provenance": provenance_json(d),
+    })
+}
+
+/// Gap by run, channel, phase and band before any effect is added.
+fn where_json(d: &Diagnosis) -> Vec<Json> {
+    let rounded = |x: f64| (x * 1e6).round() / 1e6;
+    d.cells
+        .iter()
+        .map(|c| {
+            json!({
+                "run": c.run, "channel": c.channel, "phase": c.phase, "band_hz": c.band,
+                "gap": rounded(c.gap), "significant": c.significant,
+            })
+        })
+        .collect()
+}
+
+/// How far the gap shrinks on the held-out runs.
+fn gap_json(d: &Diagnosis) -> Json {
+    let [value, lo, hi] = d.gap.closed;
+    let file = |run: &usize| d.bench.runs[*run].file.clone();
+    json!({
+        "floor": 1,
+        "nominal": d.gap.nominal,
+        "recalibrated": d.gap.recalibrated,
+        "with_effect": d.gap.with_effect,
+        "sham_closed_fraction": d.gap.sham,
+        "closed_fraction": { "value": value, "lo": lo, "hi": hi },
+        "held_out": d.gap.held_out.iter().map(file).collect::<Vec<_>>(),
+    })
+}
+
+/// What to measure next.
+fn experiments_json(d: &Diagnosis) -> Vec<Json> {
+    d.experiments
+        .iter()
+        .map(|e| {
+            json!({
+                "name": e.run.file,
+                "kind": "sliding",
+                "road_speed_m_s": e.run.road_speed_m_s,
+                "mean_pressure_pa": e.run.mean_pressure_pa,
+                "dwell_s": e.run.dwell_s,
+                "duration_s": e.run.duration_s,
+                "between": e.between,
+                "expected_gain_nats": e.gain,
+            })
+        })
+        .collect()
+}
+
+/// The models that [`read_model`] reads, by what differs from the default parameters.
+fn models_json(d: &Diagnosis) -> Json {
+    let from_defaults = |params: &Params| changes(params, &Params::default());
+    let best = diagnose::best_cause(&d.weighed);
+    json!({
+        "nominal": from_defaults(&nominal(&d.bench.plan)),
+        "recalibrated": from_defaults(&d.bench.params(&[], &d.fits.base.fit.x)),
+        "with-effect": from_defaults(&params_of(d, &best)),
+        "with-effect_effects": decide::names(&d.bench, &d.fits, &best),
+    })
+}
+
+/// Rules that need no model.
+fn rules_json(d: &Diagnosis) -> Vec<Json> {
+    d.fits
+        .findings
+        .iter()
+        .map(|f| {
+            json!({
+                "rule": format!("{:?}", f.rule).to_lowercase(), "value": f.value,
+                "broken": f.broken, "text": f.text,
+            })
+        })
+        .collect()
+}
+
+/// From which data, with what chance and by which program the answers came.
+fn provenance_json(d: &Diagnosis) -> Json {
+    let hex = |hash: u64| format!("{hash:016x}");
+    let runs = d.campaign.runs.iter();
+    json!({
+        "data_hash": hex(d.campaign.hash()),
+        "runs": runs.map(|r| json!({"file": r.spec.file, "hash": hex(r.hash)}))
+            .collect::<Vec<_>>(),
+        "seed": d.settings.seed,
+        "version": env!("CARGO_PKG_VERSION"),
+        "simulations": d.simulations(),
+        "seconds": (d.seconds * 10.0).round() / 10.0,
     })
 }
 

@@ -47,55 +47,83 @@ impl Axis {
 
 /// Curves over common axes; `labels` are quantity and unit of x and y.
 pub fn lines(title: &str, labels: [&str; 2], of: &[Line<'_>], [width, height]: [f64; 2]) -> String {
-    let (right, bottom) = (width - RIGHT, height - BOTTOM);
-    let x_axis = Axis::over(of.iter().flat_map(|l| l.0.iter().copied()), (LEFT, right));
-    let y_axis = Axis::over(of.iter().flat_map(|l| l.1.iter().copied()), (bottom, TOP));
-    let title = escape(title);
-    let told = format!("{title}: {} over {}", escape(labels[1]), escape(labels[0]));
+    let axes = Axes {
+        x: Axis::over(of.iter().flat_map(|l| l.0.iter().copied()), (LEFT, width - RIGHT)),
+        y: Axis::over(of.iter().flat_map(|l| l.1.iter().copied()), (height - BOTTOM, TOP)),
+    };
+    let [title, x, y] = [title, labels[0], labels[1]].map(escape);
     let mut out = format!(
-        "<svg viewBox=\"0 0 {width} {height}\" width=\"{width}\" role=\"img\" aria-label=\"{told}\">\
+        "<svg viewBox=\"0 0 {width} {height}\" width=\"{width}\" role=\"img\" \
+         aria-label=\"{title}: {y} over {x}\">\
          <text x=\"{LEFT}\" y=\"13\" class=\"t\">{title}</text>"
     );
-    let (ticks, decimals) = x_axis.ticks();
-    for (at, x) in ticks.iter().map(|x| (x_axis.at(*x), x)) {
-        out.push_str(&format!(
-            "<path d=\"M{at:.1} {TOP}V{bottom}\" class=\"grid\"/>\
-             <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{x:.decimals$}</text>",
-            bottom + 13.0
-        ));
+    out.push_str(&axes.grid());
+    out.push_str(&axes.frame(&x, &y));
+    out.extend(of.iter().map(|line| axes.curve(line)));
+    out.push_str("</svg>");
+    out
+}
+
+/// The axes of a picture.
+struct Axes {
+    x: Axis,
+    y: Axis,
+}
+
+impl Axes {
+    /// Right and lower end \[px\].
+    fn corner(&self) -> (f64, f64) {
+        (self.x.pixels.1, self.y.pixels.0)
     }
-    let (ticks, decimals) = y_axis.ticks();
-    for (at, y) in ticks.iter().map(|y| (y_axis.at(*y), y)) {
-        out.push_str(&format!(
-            "<path d=\"M{LEFT} {at:.1}H{right}\" class=\"grid\"/>\
-             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{y:.decimals$}</text>",
-            LEFT - 4.0,
-            at + 4.0
-        ));
+
+    /// Lines and numbers at the ticks.
+    fn grid(&self) -> String {
+        let (right, bottom) = self.corner();
+        let mut out = String::new();
+        let (ticks, decimals) = self.x.ticks();
+        for (at, x) in ticks.iter().map(|x| (self.x.at(*x), x)) {
+            out.push_str(&format!(
+                "<path d=\"M{at:.1} {TOP}V{bottom}\" class=\"grid\"/>\
+                 <text x=\"{at:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{x:.decimals$}</text>",
+                bottom + 13.0
+            ));
+        }
+        let (ticks, decimals) = self.y.ticks();
+        for (at, y) in ticks.iter().map(|y| (self.y.at(*y), y)) {
+            out.push_str(&format!(
+                "<path d=\"M{LEFT} {at:.1}H{right}\" class=\"grid\"/>\
+                 <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{y:.decimals$}</text>",
+                LEFT - 4.0,
+                at + 4.0
+            ));
+        }
+        out
     }
-    let middle = 0.5 * (TOP + bottom);
-    out.push_str(&format!(
-        "<rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\" class=\"frame\"/>\
-         <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>\
-         <text transform=\"translate(12 {middle:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text>",
-        right - LEFT,
-        bottom - TOP,
-        0.5 * (LEFT + right),
-        height - 6.0,
-        escape(labels[0]),
-        escape(labels[1])
-    ));
-    for (x, y, class) in of {
+
+    /// The frame, and what the axes show.
+    fn frame(&self, x: &str, y: &str) -> String {
+        let (right, bottom) = self.corner();
+        let middle = 0.5 * (TOP + bottom);
+        format!(
+            "<rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{:.1}\" height=\"{:.1}\" class=\"frame\"/>\
+             <text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{x}</text>\
+             <text transform=\"translate(12 {middle:.1}) rotate(-90)\" text-anchor=\"middle\">{y}</text>",
+            right - LEFT,
+            bottom - TOP,
+            0.5 * (LEFT + right),
+            bottom + BOTTOM - 6.0
+        )
+    }
+
+    fn curve(&self, (x, y, class): &Line<'_>) -> String {
         let points: Vec<String> = x
             .iter()
             .zip(y.iter())
             .filter(|(x, y)| x.is_finite() && y.is_finite())
-            .map(|(x, y)| format!("{:.1},{:.1}", x_axis.at(*x), y_axis.at(*y)))
+            .map(|(x, y)| format!("{:.1},{:.1}", self.x.at(*x), self.y.at(*y)))
             .collect();
-        out.push_str(&format!("<polyline points=\"{}\" class=\"l{class}\"/>", points.join(" ")));
+        format!("<polyline points=\"{}\" class=\"l{class}\"/>", points.join(" "))
     }
-    out.push_str("</svg>");
-    out
 }
 
 /// A short stroke of a curve's class, for legends.

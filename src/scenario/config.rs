@@ -5,7 +5,7 @@ use std::path::Path;
 use super::run_table::Reader;
 use super::{belt_csv, BeltPath, Inputs, Plan, Roll, Scenario, Slide};
 use crate::error::{Fault, Problem};
-use crate::params::{check, load, Params};
+use crate::params::{check, load, NormalDrive, Params};
 
 /// A run: block, motion, instants.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,18 +48,7 @@ pub fn from_toml(text: &str, folder: &Path, sets: &[String]) -> Result<Config, F
     for set in run_sets {
         problems.extend(set_in(&mut document, set));
     }
-    let run = match document.remove("run") {
-        Some(toml::Value::Table(table)) => table,
-        _ => {
-            problems.push(Problem::new(
-                "run",
-                "missing",
-                "a table [run] with [run.slide] or [run.roll]",
-                "`tread init` writes an example",
-            ));
-            toml::Table::new()
-        }
-    };
+    let run = take_run(&mut document, &mut problems);
     let chosen = document.get("drive").and_then(|d| d.get("normal")).is_some();
     let (mut params, found) = load::from_table(&document, Params::default());
     problems.extend(found);
@@ -68,28 +57,14 @@ pub fn from_toml(text: &str, folder: &Path, sets: &[String]) -> Result<Config, F
     }
     let mut reader = Reader::of(&run, problems);
     if run.is_empty() {
-        reader.problems.extend(check::problems(&params));
-        if reader.problems.is_empty() {
-            reader.problems.push(Problem::new(
-                "[run]",
-                "empty",
-                "duration and one of the tables run.slide, run.roll",
-                "say what the block does; `tread init slide` writes an example",
-            ));
-        }
-        return Err(Fault::Invalid(reader.problems));
+        return Err(without_run(reader.problems, &params));
     }
     let built = reader.build(&run, &params, folder);
     let mut problems = reader.problems;
     if let Some((scenario, _)) = &built {
         let needed = scenario.normal_drive();
         if chosen && params.drive.normal != needed {
-            problems.push(Problem::new(
-                "drive.normal",
-                format!("{:?}", params.drive.normal).to_lowercase(),
-                format!("{needed:?} for this run").to_lowercase(),
-                "leave it out: a run sets it",
-            ));
+            problems.push(other_drive(params.drive.normal, needed));
         }
         params.drive.normal = needed;
     }
@@ -98,6 +73,44 @@ pub fn from_toml(text: &str, folder: &Path, sets: &[String]) -> Result<Config, F
         Some((scenario, plan)) if problems.is_empty() => Ok(Config { params, scenario, plan }),
         _ => Err(Fault::Invalid(problems)),
     }
+}
+
+/// Takes the table `[run]` out of a document; an empty one, and a problem, where there is none.
+fn take_run(document: &mut toml::Table, problems: &mut Vec<Problem>) -> toml::Table {
+    if let Some(toml::Value::Table(table)) = document.remove("run") {
+        return table;
+    }
+    problems.push(Problem::new(
+        "run",
+        "missing",
+        "a table [run] with [run.slide] or [run.roll]",
+        "`tread init` writes an example",
+    ));
+    toml::Table::new()
+}
+
+/// A file that does not say what is done: its other problems, or else that one.
+fn without_run(mut problems: Vec<Problem>, params: &Params) -> Fault {
+    problems.extend(check::problems(params));
+    if problems.is_empty() {
+        problems.push(Problem::new(
+            "[run]",
+            "empty",
+            "duration and one of the tables run.slide, run.roll",
+            "say what the block does; `tread init slide` writes an example",
+        ));
+    }
+    Fault::Invalid(problems)
+}
+
+/// A file that chose another normal drive than its run needs.
+fn other_drive(chosen: NormalDrive, needed: NormalDrive) -> Problem {
+    Problem::new(
+        "drive.normal",
+        format!("{chosen:?}").to_lowercase(),
+        format!("{needed:?} for this run").to_lowercase(),
+        "leave it out: a run sets it",
+    )
 }
 
 /// Puts `run.x.y=value` of the command line into the document.

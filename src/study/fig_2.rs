@@ -1,7 +1,7 @@
 //! Figure 2: friction characteristic, and contact stiffness as force over approach.
 
 use super::identify::objective::Fineness;
-use super::measured::{Curve, Measurements};
+use super::measured::{Curve, Grid, Measurements};
 use super::plot::{svg, Panel, Series};
 use super::report::{csv, Study, Verdict};
 use crate::block::Reductions;
@@ -26,26 +26,11 @@ pub fn fig_2(
     measured: &Measurements,
 ) -> Result<Study, Fault> {
     let law = Law::new(&compound.friction, None);
-    let speeds: Vec<f64> = (0..80).map(|i| 1e-3 * 3000.0_f64.powf(f64::from(i) / 79.0)).collect();
-    let mu = |p: f64, v: f64| law.at(p, v)[0];
-    let mut series = Vec::new();
-    for (color, p) in PRESSURES.iter().enumerate() {
-        let line = speeds.iter().map(|v| (1e3 * v, mu(*p, *v))).collect();
-        series.push(Series::line(format!("{:.2} N/mm2", 1e-6 * p), color, line));
-        let dots =
-            measured.friction.points.iter().filter(|m| m[0] == *p).map(|m| (1e3 * m[1], m[2]));
-        series.push(Series::dots("", color, dots.collect()));
-    }
-    let axes = ["sliding speed [mm/s]", "friction coefficient"];
-    let mut friction = Panel::new("friction characteristic, dots: measured", axes, series);
-    friction.log_x = true;
     let curve = approach(compound, fineness)?;
-    let rows = PRESSURES
-        .iter()
-        .flat_map(|p| speeds.iter().map(|v| vec![*p, *v, mu(*p, *v)]).collect::<Vec<_>>());
     let area = LENGTH * compound.block.width;
-    let (soft, stiff) = (slope(&curve, 10e3), slope(&curve, 400e3));
-    let slope_at = |v: f64| law.at(250e3, v)[1];
+    let forces = curve.iter().map(|c| vec![c[0], c[1], area * c[1]]);
+    let forces = csv("approach_m,mean_pressure_pa,force_n", forces);
+    let panels = [friction(&law, &measured.friction), stiffness(&curve, area, &measured.stiffness)];
     Ok(Study {
         name: "fig-2",
         title: "Friction characteristic and contact stiffness",
@@ -54,29 +39,54 @@ pub fn fig_2(
             measured.friction.origin, measured.stiffness.origin
         ),
         tables: vec![
-            ("fig-2-friction.csv".to_string(), csv("pressure_pa,speed_m_s,mu", rows)),
-            (
-                "fig-2-stiffness.csv".to_string(),
-                csv(
-                    "approach_m,mean_pressure_pa,force_n",
-                    curve.iter().map(|c| vec![c[0], c[1], area * c[1]]),
-                ),
-            ),
+            ("fig-2-friction.csv".to_string(), friction_table(&law)),
+            ("fig-2-stiffness.csv".to_string(), forces),
         ],
-        pictures: vec![("fig-2.svg".to_string(), svg(&[friction, stiffness(&curve, area, &measured.stiffness)], 2)?)],
-        verdicts: vec![
-            Verdict::new(
-                "friction falls with speed at 0.25 N/mm2 and 300 mm/s",
-                slope_at(0.3) < 0.0,
-                format!("{:.2} per m/s", slope_at(0.3)),
-            ),
-            Verdict::new(
-                "the contact is soft at first and stiffens",
-                stiff > 2.0 * soft,
-                format!("{:.1e} to {:.1e} Pa/m from 10 to 400 kPa", soft, stiff),
-            ),
-        ],
+        pictures: vec![("fig-2.svg".to_string(), svg(&panels, 2)?)],
+        verdicts: verdicts(&law, &curve),
     })
+}
+
+/// Speeds over which the characteristic is drawn \[m/s\]: 1 mm/s to 3 m/s, evenly in their logarithm.
+fn speeds() -> impl Iterator<Item = f64> {
+    (0..80).map(|i| 1e-3 * 3000.0_f64.powf(f64::from(i) / 79.0))
+}
+
+/// Friction coefficient over speed at each pressure, of the law and measured.
+fn friction(law: &Law, measured: &Grid) -> Panel {
+    let mut series = Vec::new();
+    for (color, p) in PRESSURES.iter().enumerate() {
+        let line = speeds().map(|v| (1e3 * v, law.at(*p, v)[0])).collect();
+        series.push(Series::line(format!("{:.2} N/mm2", 1e-6 * p), color, line));
+        let dots = measured.points.iter().filter(|m| m[0] == *p).map(|m| (1e3 * m[1], m[2]));
+        series.push(Series::dots("", color, dots.collect()));
+    }
+    let axes = ["sliding speed [mm/s]", "friction coefficient"];
+    let mut panel = Panel::new("friction characteristic, dots: measured", axes, series);
+    panel.log_x = true;
+    panel
+}
+
+fn friction_table(law: &Law) -> String {
+    let rows = PRESSURES.iter().flat_map(|p| speeds().map(move |v| vec![*p, v, law.at(*p, v)[0]]));
+    csv("pressure_pa,speed_m_s,mu", rows)
+}
+
+fn verdicts(law: &Law, curve: &[[f64; 2]]) -> Vec<Verdict> {
+    let falling = law.at(250e3, 0.3)[1];
+    let (soft, stiff) = (slope(curve, 10e3), slope(curve, 400e3));
+    vec![
+        Verdict::new(
+            "friction falls with speed at 0.25 N/mm2 and 300 mm/s",
+            falling < 0.0,
+            format!("{falling:.2} per m/s"),
+        ),
+        Verdict::new(
+            "the contact is soft at first and stiffens",
+            stiff > 2.0 * soft,
+            format!("{soft:.1e} to {stiff:.1e} Pa/m from 10 to 400 kPa"),
+        ),
+    ]
 }
 
 /// Mean pressure over approach of a pressed block at rest: approach \[m\], pressure \[Pa\].

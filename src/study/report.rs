@@ -93,50 +93,59 @@ pub fn html(studies: &[Study], compound: &str) -> String {
         "<p>{held} of {} statements of the paper hold on this model with this compound.</p>\n",
         all.len()
     ));
-    for study in studies {
-        out.push_str(&format!(
-            "<h2 id=\"{0}\">{0}: {1}</h2>\n<pre class=\"notes\">{2}</pre>\n",
-            study.name,
-            escape(study.title),
-            escape(&study.notes)
-        ));
-        if !study.verdicts.is_empty() {
-            let mut table = String::from("<table>");
-            table.push_str(&page::columns(&["statement of the paper", "holds", "number"]));
-            for v in &study.verdicts {
-                let (class, word) = if v.holds { ("yes", "yes") } else { ("no", "no") };
-                table.push_str(&format!(
-                    "<tr><td>{}</td><td class=\"{class}\">{word}</td><td class=\"words\">{}</td></tr>\n",
-                    escape(&v.statement),
-                    escape(&v.number)
-                ));
-            }
-            out.push_str(&page::wide("Statements", &(table + "</table>")));
-        }
-        for (name, svg) in &study.pictures {
-            let picture = page::picture(svg, &format!("{}: {}", study.title, name));
-            out.push_str(&format!("<figure>{}</figure>\n", page::wide(name, &picture)));
-        }
-        for (name, text) in &study.tables {
-            if name.ends_with(".txt") {
-                let listing = format!("<pre>{}</pre>", escape(text));
-                out.push_str(&page::wide(name, &listing));
-            } else if text.lines().count() <= 40 {
-                out.push_str(&format!(
-                    "<details open><summary>{name}</summary>{}</details>\n",
-                    page::wide(name, &grid(text))
-                ));
-            } else {
-                out.push_str(&format!("<p>Data: <code>{name}</code></p>\n"));
-            }
-        }
-    }
+    out.extend(studies.iter().map(section));
     out.push_str(&format!(
         "<h2>Compound</h2><details><summary>all parameters</summary><pre>{}</pre></details>\n",
         escape(compound)
     ));
     out.push_str(page::TAIL);
     out
+}
+
+/// One study: notes, statements, pictures, tables.
+fn section(study: &Study) -> String {
+    let mut out = format!(
+        "<h2 id=\"{0}\">{0}: {1}</h2>\n<pre class=\"notes\">{2}</pre>\n",
+        study.name,
+        escape(study.title),
+        escape(&study.notes)
+    );
+    if !study.verdicts.is_empty() {
+        out.push_str(&page::wide("Statements", &statements(&study.verdicts)));
+    }
+    for (name, svg) in &study.pictures {
+        let picture = page::picture(svg, &format!("{}: {}", study.title, name));
+        out.push_str(&format!("<figure>{}</figure>\n", page::wide(name, &picture)));
+    }
+    out.extend(study.tables.iter().map(|(name, text)| table(name, text)));
+    out
+}
+
+/// What the model says to the paper's statements, as an HTML table.
+fn statements(verdicts: &[Verdict]) -> String {
+    let head = page::columns(&["statement of the paper", "holds", "number"]);
+    let row = |v: &Verdict| {
+        let answer = if v.holds { "yes" } else { "no" };
+        format!(
+            "<tr><td>{}</td><td class=\"{answer}\">{answer}</td><td class=\"words\">{}</td></tr>\n",
+            escape(&v.statement),
+            escape(&v.number)
+        )
+    };
+    let rows: String = verdicts.iter().map(row).collect();
+    format!("<table>{head}{rows}</table>")
+}
+
+/// A table's file: text as it is, a short CSV as an HTML table, a long one by its name only.
+fn table(name: &str, text: &str) -> String {
+    if name.ends_with(".txt") {
+        page::wide(name, &format!("<pre>{}</pre>", escape(text)))
+    } else if text.lines().count() <= 40 {
+        let grid = page::wide(name, &grid(text));
+        format!("<details open><summary>{name}</summary>{grid}</details>\n")
+    } else {
+        format!("<p>Data: <code>{name}</code></p>\n")
+    }
 }
 
 /// A number with the four digits that people read; other text as it is. The CSV beside the page has all digits.

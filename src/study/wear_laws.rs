@@ -81,6 +81,11 @@ pub fn fit(points: &[Measured]) -> Option<[f64; 3]> {
     Some([solution[0].exp(), solution[1], solution[2]])
 }
 
+/// η* \[kg/m³\] that the generalised law with the k₁, k₂ and k₃ of [`fit`] says.
+pub fn generalised_rate([k1, k2, k3]: [f64; 3], pressure: f64, speed: f64) -> f64 {
+    k1 * (pressure / REFERENCE.0).powf(k2) * (speed / REFERENCE.1).powf(k3)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -102,7 +102,7 @@ pub fn diagnose(
     progress(0.0, "recalibrating the base model");
     let guess = guess(&campaign, &bench, settings.method, &seen, progress)?;
     let mut fits = hypotheses::fit_all(&mut bench, &guess, &seen, settings.method, progress)?;
-    let mut weighed = decide::weigh(&fits);
+    let first_look = decide::weigh(&fits);
     let modules = decide::modules(&bench, &fits);
     let (detectable, indistinguishable) =
         (detectable(&bench, &fits), indistinguishable(&bench, &fits));
@@ -111,17 +111,10 @@ pub fn diagnose(
     whole.measure_floor(&bench.params(&[], &fits.base.fit.x), &all)?;
     if settings.method.recalibrate {
         let seen = held_out::to_fit(&bench.runs, &held, Look::Whole);
-        polish::polish(&whole, &mut fits, &weighed, &seen, progress);
+        polish::polish(&whole, &mut fits, &first_look, &seen, progress);
     }
     progress(0.99, "judging the held-out runs");
-    let (mut gap, mut closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
-    if settings.hold_out {
-        let before = weighed;
-        weighed = second_look::second_look(&fits, &before, &closed);
-        if weighed.iter().zip(&before).any(|(now, then)| now.cause != then.cause) {
-            (gap, closed) = how_far(&whole, &fits, &weighed, &judged, settings.seed);
-        }
-    }
+    let (weighed, gap, closed) = judge(&whole, &fits, first_look, &judged, settings);
     let decision = decide::decide(&bench, &fits, &weighed);
     let cells = where_::map(&whole, &at(&whole, &fits.base, &all));
     let experiments = experiment::next(&bench, &fits, &weighed);
@@ -166,6 +159,27 @@ fn guess(
     let mut middle = Bench::new(campaign, bench.specs, Look::Middle)?;
     guess::second_guess(&mut middle, &mut guess, seen, progress)?;
     Ok(guess)
+}
+
+/// The causes after a second look where runs are held out, the gap on the runs `judged`, and the closed fraction of
+/// every cause that is judged.
+fn judge(
+    whole: &Bench,
+    fits: &Fits,
+    first_look: Vec<Weighed>,
+    judged: &[usize],
+    settings: Settings,
+) -> (Vec<Weighed>, Gap, Vec<Option<f64>>) {
+    let (gap, closed) = how_far(whole, fits, &first_look, judged, settings.seed);
+    if !settings.hold_out {
+        return (first_look, gap, closed);
+    }
+    let weighed = second_look::second_look(fits, &first_look, &closed);
+    if weighed.iter().zip(&first_look).all(|(now, then)| now.cause == then.cause) {
+        return (weighed, gap, closed);
+    }
+    let (gap, closed) = how_far(whole, fits, &weighed, judged, settings.seed);
+    (weighed, gap, closed)
 }
 
 /// The most probable cause with a fit of its own.

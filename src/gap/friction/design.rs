@@ -11,47 +11,53 @@ pub(super) fn design(
     memory: Option<f64>,
     stretch: f64,
 ) -> (Vec<&'static str>, Vec<Vec<f64>>) {
-    let mean = |c: &[f64]| c.iter().sum::<f64>() / c.len().max(1) as f64;
-    let arrived = arrived(record, stretch);
-    let place = mean(&record.place);
-    let load = record.pressure.as_ref().map_or(1.0, |p| mean(p));
-    let rows = (0..record.value.len())
-        .map(|i| {
-            let sign = record.direction[i];
+    let samples = &record.samples;
+    let pressures: Vec<f64> = samples.iter().filter_map(|s| s.pressure).collect();
+    let load = if pressures.is_empty() { 1.0 } else { mean(pressures.into_iter()) };
+    let middle = mean(samples.iter().map(|s| s.place));
+    let rows = samples
+        .iter()
+        .zip(arrived(record, stretch))
+        .map(|(s, fast)| {
+            let sign = s.direction;
             let mut row = vec![sign];
-            let pressure = record.pressure.as_ref().map(|p| p[i]);
             if record.piston {
-                row.push(pressure.unwrap_or(0.0));
+                row.push(s.pressure.unwrap_or(0.0));
             }
-            let fast = arrived[i];
             if law != Law::Constant {
                 row.push(sign * fast);
             }
             // Contacts are as old as the change left them; before a step nothing has changed.
-            let old = |i: usize, kept: f64| {
+            let old = |kept: f64| {
                 if record.piston {
                     kept
-                } else if record.stroke[i] == 0 {
+                } else if s.stroke == 0 {
                     0.0
                 } else {
-                    kept * arrival(record.since[i], stretch)
+                    kept * arrival(s.since, stretch)
                 }
             };
             let kept = |x: f64| (-x / memory.unwrap_or(1.0)).exp();
             match law {
                 Law::Constant | Law::Speed => {}
-                Law::RigCompliance => row.push(sign * kept(record.since[i])),
-                Law::FrictionAgeing => row.push(sign * old(i, kept(record.since[i]))),
-                Law::ThermalFriction if !record.piston && record.stroke[i] == 0 => row.push(0.0),
-                Law::ThermalFriction => row.push(sign * (1.0 - kept(record.since_time[i]))),
-                Law::Adhesion => row.push(sign * (pressure.unwrap_or(load) / load - 1.0)),
-                Law::Misalignment => row.push(sign * (record.place[i] - place)),
-                Law::Drift => row.push(sign * record.slip[i]),
+                Law::RigCompliance => row.push(sign * kept(s.since)),
+                Law::FrictionAgeing => row.push(sign * old(kept(s.since))),
+                Law::ThermalFriction if !record.piston && s.stroke == 0 => row.push(0.0),
+                Law::ThermalFriction => row.push(sign * (1.0 - kept(s.since_time))),
+                Law::Adhesion => row.push(sign * (s.pressure.unwrap_or(load) / load - 1.0)),
+                Law::Misalignment => row.push(sign * (s.place - middle)),
+                Law::Drift => row.push(sign * s.slip),
             }
             row
         })
         .collect();
     (names(record, law), rows)
+}
+
+/// Mean of values; 0 of none.
+fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len().max(1) as f64;
+    values.sum::<f64>() / count
 }
 
 /// Names of the coefficients, in the order of the factors.
@@ -87,24 +93,23 @@ fn arrival(x: f64, stretch: f64) -> f64 {
 /// Logarithm of the sliding speed over its mean; where it is stepped, the two speeds' with the rig
 /// stretching in between.
 fn arrived(record: &FrictionRecord, stretch: f64) -> Vec<f64> {
-    let count = record.speed.len();
-    let mean = record.speed.iter().map(|v| v.ln()).sum::<f64>() / count.max(1) as f64;
+    let samples = &record.samples;
+    let mean = mean(samples.iter().map(|s| s.speed.ln()));
     if record.piston {
-        return record.speed.iter().map(|v| v.ln() - mean).collect();
+        return samples.iter().map(|s| s.speed.ln() - mean).collect();
     }
     let of = |stroke: usize| {
         let mut speeds: Vec<f64> =
-            (0..count).filter(|i| record.stroke[*i] == stroke).map(|i| record.speed[i]).collect();
+            samples.iter().filter(|s| s.stroke == stroke).map(|s| s.speed).collect();
         speeds.sort_by(f64::total_cmp);
         speeds.get(speeds.len() / 2).map_or(mean, |v| v.ln())
     };
-    let last = record.stroke.last().copied().unwrap_or(0);
-    let speeds: Vec<f64> = (0..=last).map(of).collect();
-    (0..count)
-        .map(|i| {
-            let k = record.stroke[i];
-            let before = speeds[k.saturating_sub(1)];
-            before + (speeds[k] - before) * arrival(record.since[i], stretch) - speeds[0]
+    let speeds: Vec<f64> = (0..=record.last_stroke()).map(of).collect();
+    samples
+        .iter()
+        .map(|s| {
+            let before = speeds[s.stroke.saturating_sub(1)];
+            before + (speeds[s.stroke] - before) * arrival(s.since, stretch) - speeds[0]
         })
         .collect()
 }

@@ -32,14 +32,14 @@ pub struct Fitted {
 
 /// The law with the memory and the stretch that do best where it is fitted.
 pub(super) fn best(record: &FrictionRecord, law: Law, pieces: &[usize]) -> Option<Fitted> {
-    let slip = record.since.iter().copied().fold(0.0, f64::max);
-    let time = record.since_time.iter().copied().fold(0.0, f64::max);
+    let slip = record.samples.iter().map(|s| s.since).fold(0.0, f64::max);
+    let time = record.samples.iter().map(|s| s.since_time).fold(0.0, f64::max);
     let memories: Vec<Option<f64>> = match law {
         Law::FrictionAgeing => SHARES.iter().map(|s| Some(s * slip)).collect(),
         Law::RigCompliance if record.piston => SHARES.iter().map(|s| Some(s * slip)).collect(),
         Law::ThermalFriction => SHARES.iter().map(|s| Some(s * time)).collect(),
         Law::RigCompliance => return None,
-        Law::Adhesion if record.pressure.is_none() => return None,
+        Law::Adhesion if record.samples.iter().all(|s| s.pressure.is_none()) => return None,
         _ => vec![None],
     };
     // A stiff rig hands a change of the speed on at once.
@@ -48,7 +48,7 @@ pub(super) fn best(record: &FrictionRecord, law: Law, pieces: &[usize]) -> Optio
         stretches.extend(SHARES.iter().map(|s| s * slip));
     }
     let all = memories.iter().flat_map(|m| stretches.iter().map(move |s| (*m, *s)));
-    all.filter_map(|(memory, stretch)| one(record, law, memory, stretch, pieces))
+    all.filter_map(|(memory, stretch)| fitted(record, law, memory, stretch, pieces))
         .filter(of_right_sign)
         .min_by(|a, b| a.fitted.total_cmp(&b.fitted))
 }
@@ -64,7 +64,7 @@ fn of_right_sign(fitted: &Fitted) -> bool {
 }
 
 /// The law with this memory \[m or s\] and this stretch \[m\]: even pieces are fitted, odd ones judged.
-fn one(
+fn fitted(
     record: &FrictionRecord,
     law: Law,
     memory: Option<f64>,
@@ -77,44 +77,66 @@ fn one(
     if fit.len() <= names.len() || judge.is_empty() {
         return None;
     }
-    let x = DMatrix::from_fn(fit.len(), names.len(), |i, j| rows[fit[i]][j]);
-    let y = DVector::from_fn(fit.len(), |i, _| record.value[fit[i]]);
-    // Columns to one size, so that the normal matrix is well conditioned.
-    let size: Vec<f64> = (0..names.len()).map(|j| x.column(j).norm().max(1e-300)).collect();
-    let scaled = DMatrix::from_fn(fit.len(), names.len(), |i, j| x[(i, j)] / size[j]);
-    let normal = scaled.tr_mul(&scaled) + DMatrix::identity(names.len(), names.len()) * 1e-12;
-    let factor = normal.cholesky()?;
-    let solution = factor.solve(&scaled.tr_mul(&y));
-    let error = |of: &[usize]| {
-        let sum: f64 = of
-            .iter()
-            .map(|i| {
-                let told: f64 = (0..names.len()).map(|j| rows[*i][j] / size[j] * solution[j]).sum();
-                (record.value[*i] - told).powi(2)
-            })
-            .sum();
-        (sum / of.len() as f64).sqrt()
-    };
-    let fitted = error(&fit);
-    let inverse = factor.inverse();
+    let values: Vec<f64> = record.samples.iter().map(|s| s.value).collect();
+    let solved = LeastSquares::of(&rows, &values, &fit)?;
+    let fitted = solved.error(&rows, &values, &fit);
     // Errors of one piece are one error.
-    let independent = (fit.len() as f64 / (pieces.iter().max()? / 2 + 1) as f64).max(1.0);
-    let coefficients = names
-        .iter()
-        .enumerate()
-        .map(|(j, name)| {
-            let deviation = fitted * (inverse[(j, j)] * independent).sqrt() / size[j];
-            (*name, solution[j] / size[j], deviation)
-        })
-        .collect();
+    let alike = (fit.len() as f64 / (pieces.iter().max()? / 2 + 1) as f64).max(1.0);
+    let told = |(j, name): (usize, &&'static str)| {
+        (*name, solved.coefficient(j), solved.deviation(j, fitted, alike))
+    };
     Some(Fitted {
         law,
-        held_out: error(&judge),
+        held_out: solved.error(&rows, &values, &judge),
         fitted,
         memory,
         stretch,
-        coefficients,
+        coefficients: names.iter().enumerate().map(told).collect(),
         probability: 0.0,
         closed: 0.0,
     })
+}
+
+/// A solution of least squares, its columns scaled to one size so that the normal matrix is well conditioned.
+struct LeastSquares {
+    /// Size of each column.
+    size: Vec<f64>,
+    /// Coefficients of the scaled columns.
+    scaled: DVector<f64>,
+    /// Inverse of the normal matrix of the scaled columns.
+    inverse: DMatrix<f64>,
+}
+
+impl LeastSquares {
+    /// Of the values and the rows of factors at the places `of`; `None` where they do not determine it.
+    fn of(rows: &[Vec<f64>], values: &[f64], of: &[usize]) -> Option<Self> {
+        let count = rows.first()?.len();
+        let x = DMatrix::from_fn(of.len(), count, |i, j| rows[of[i]][j]);
+        let y = DVector::from_fn(of.len(), |i, _| values[of[i]]);
+        let size: Vec<f64> = (0..count).map(|j| x.column(j).norm().max(1e-300)).collect();
+        let scaled = DMatrix::from_fn(of.len(), count, |i, j| x[(i, j)] / size[j]);
+        let normal = scaled.tr_mul(&scaled) + DMatrix::identity(count, count) * 1e-12;
+        let factor = normal.cholesky()?;
+        let solution = factor.solve(&scaled.tr_mul(&y));
+        Some(Self { size, scaled: solution, inverse: factor.inverse() })
+    }
+
+    fn coefficient(&self, j: usize) -> f64 {
+        self.scaled[j] / self.size[j]
+    }
+
+    /// Standard deviation of a coefficient where every `alike` samples with the same `error` are one.
+    fn deviation(&self, j: usize, error: f64, alike: f64) -> f64 {
+        error * (self.inverse[(j, j)] * alike).sqrt() / self.size[j]
+    }
+
+    /// Root mean square error at the places `of`.
+    fn error(&self, rows: &[Vec<f64>], values: &[f64], of: &[usize]) -> f64 {
+        let square = |i: &usize| {
+            let scaled = rows[*i].iter().zip(&self.size).map(|(x, size)| x / size);
+            let told: f64 = scaled.zip(&self.scaled).map(|(x, c)| x * c).sum();
+            (values[*i] - told).powi(2)
+        };
+        (of.iter().map(square).sum::<f64>() / of.len() as f64).sqrt()
+    }
 }

@@ -17,34 +17,56 @@ const SAMPLES: usize = 6000;
 const SPEED_REACH: usize = 3;
 /// Samples at the least.
 const FEWEST: usize = 100;
+/// A piston stands, and shows no sliding friction, while it is slower than this share of its median speed.
+const STANDS: f64 = 0.3;
 
 /// What was measured, cut to what slides.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FrictionRecord {
     /// File.
     pub file: String,
-    /// Time \[s\].
-    pub time: Vec<f64>,
-    /// Friction \[-\], or force \[N\] of a piston.
-    pub value: Vec<f64>,
-    /// +1 or −1: the direction in which friction acts on the value; +1 throughout for a coefficient.
-    pub direction: Vec<f64>,
-    /// Sliding speed, not less than 1 % of its median \[m/s\].
-    pub speed: Vec<f64>,
-    /// Slip \[m\] since the direction or the imposed speed changed.
-    pub since: Vec<f64>,
-    /// Time \[s\] since then.
-    pub since_time: Vec<f64>,
-    /// Slip \[m\] since the start.
-    pub slip: Vec<f64>,
-    /// Place \[m\].
-    pub place: Vec<f64>,
-    /// Pressure \[Pa\] on the contact or behind the piston, if measured.
-    pub pressure: Option<Vec<f64>>,
-    /// Number of the stroke, or of the piece between changes of speed.
-    pub stroke: Vec<usize>,
+    /// What slides, in the order of the time.
+    pub samples: Vec<Sample>,
     /// Is the value a force that holds pressure × area?
     pub piston: bool,
+}
+
+/// One instant of sliding, with what the laws ask of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Friction \[-\], or force \[N\] of a piston.
+    pub value: f64,
+    /// +1 or −1: the direction in which friction acts on the value; +1 throughout for a coefficient.
+    pub direction: f64,
+    /// Sliding speed, not less than 1 % of its median \[m/s\].
+    pub speed: f64,
+    /// Slip \[m\] since the direction or the imposed speed changed.
+    pub since: f64,
+    /// Time \[s\] since then.
+    pub since_time: f64,
+    /// Slip \[m\] since the start.
+    pub slip: f64,
+    /// Place \[m\].
+    pub place: f64,
+    /// Pressure \[Pa\] on the contact or behind the piston, if measured.
+    pub pressure: Option<f64>,
+    /// Number of the stroke, or of the piece between changes of speed.
+    pub stroke: usize,
+}
+
+impl FrictionRecord {
+    /// Number of the last stroke or piece.
+    pub fn last_stroke(&self) -> usize {
+        self.samples.last().map_or(0, |s| s.stroke)
+    }
+}
+
+/// Columns of a file.
+struct Columns {
+    time: Vec<f64>,
+    place: Vec<f64>,
+    value: Vec<f64>,
+    pressure: Option<Vec<f64>>,
 }
 
 /// Reads a record.
@@ -52,7 +74,7 @@ pub struct FrictionRecord {
 /// # Errors
 /// A file that cannot be read, or columns from which nothing can be concluded.
 pub fn read(path: &Path) -> Result<FrictionRecord, Fault> {
-    let shown = path.display().to_string();
+    let file = path.display().to_string();
     let has = header(path)?;
     let piston = has.iter().any(|h| h == "force_n");
     let mut names = if piston {
@@ -63,12 +85,12 @@ pub fn read(path: &Path) -> Result<FrictionRecord, Fault> {
     if !piston && has.iter().any(|h| h == "normal_pressure_pa") {
         names.push("normal_pressure_pa");
     }
-    let mut columns = columns::read(path, &names, REMEDY)?;
-    let pressure = (columns.len() > 3).then(|| columns.swap_remove(3));
-    let mut next = || columns.remove(0);
+    let mut columns = columns::read(path, &names, REMEDY)?.into_iter();
+    let mut next = || columns.next().unwrap_or_default();
     let (time, place, value) = (next(), next(), next());
-    check(&shown, &time, &value, &place)?;
-    Ok(cut(shown, time, value, place, pressure, piston))
+    let columns = Columns { time, place, value, pressure: columns.next() };
+    check(&file, &columns)?;
+    Ok(FrictionRecord { file, samples: sliding(&columns.thinned(), piston), piston })
 }
 
 /// Names of the columns.
@@ -79,7 +101,7 @@ fn header(path: &Path) -> Result<Vec<String>, Fault> {
 }
 
 /// Tells all columns from which nothing can be concluded.
-fn check(file: &str, time: &[f64], value: &[f64], place: &[f64]) -> Result<(), Fault> {
+fn check(file: &str, Columns { time, place, value, .. }: &Columns) -> Result<(), Fault> {
     let mut problems = Vec::new();
     if time.len() < FEWEST {
         problems.push(Problem::new(
@@ -123,68 +145,51 @@ fn check(file: &str, time: &[f64], value: &[f64], place: &[f64]) -> Result<(), F
     }
 }
 
-/// Means of neighbouring rows, so that about [`SAMPLES`] are left.
-fn thin(column: &[f64], every: usize) -> Vec<f64> {
-    column.chunks_exact(every).map(|c| c.iter().sum::<f64>() / every as f64).collect()
+impl Columns {
+    /// Means of neighbouring rows, so that about [`SAMPLES`] are left.
+    fn thinned(&self) -> Self {
+        let every = (self.time.len() / SAMPLES).max(1);
+        let thin = |column: &Vec<f64>| -> Vec<f64> {
+            column.chunks_exact(every).map(|c| c.iter().sum::<f64>() / every as f64).collect()
+        };
+        let [time, place, value] = [&self.time, &self.place, &self.value].map(thin);
+        Self { time, place, value, pressure: self.pressure.as_ref().map(thin) }
+    }
 }
 
 /// The rows that slide, with what the laws ask of them.
-fn cut(
-    file: String,
-    time: Vec<f64>,
-    value: Vec<f64>,
-    place: Vec<f64>,
-    pressure: Option<Vec<f64>>,
-    piston: bool,
-) -> FrictionRecord {
-    let every = (time.len() / SAMPLES).max(1);
-    let [time, value, place] = [&time, &value, &place].map(|c| thin(c, every));
-    let pressure = pressure.map(|p| thin(&p, every));
-    let count = time.len();
-    let velocity = velocity(&time, &place);
+fn sliding(columns: &Columns, piston: bool) -> Vec<Sample> {
+    let Columns { time, place, value, pressure } = columns;
+    let velocity = velocity(time, place);
     let mut sizes: Vec<f64> = velocity.iter().map(|v| v.abs()).collect();
     sizes.sort_by(f64::total_cmp);
-    let typical = sizes[count / 2].max(1e-15);
-    let changes = if piston { reversals(&velocity, 0.3 * typical) } else { steps(&time, &place) };
-    let mut record = FrictionRecord {
-        file,
-        time: Vec::new(),
-        value: Vec::new(),
-        direction: Vec::new(),
-        speed: Vec::new(),
-        since: Vec::new(),
-        since_time: Vec::new(),
-        slip: Vec::new(),
-        place: Vec::new(),
-        pressure: pressure.as_ref().map(|_| Vec::new()),
-        stroke: Vec::new(),
-        piston,
-    };
+    let typical = sizes[time.len() / 2].max(1e-15);
+    let stands = STANDS * typical;
+    let changes = if piston { reversals(&velocity, stands) } else { steps(time, place) };
+    let mut samples = Vec::new();
     let (mut slip, mut last, mut stroke) = (0.0, 0, 0);
     let mut at_change = 0.0;
-    for i in 0..count {
+    for i in 0..time.len() {
         if changes.contains(&i) {
             (last, at_change, stroke) = (i, slip, stroke + 1);
         }
         slip += if i > 0 { (place[i] - place[i - 1]).abs() } else { 0.0 };
-        // A piston that stands shows no sliding friction.
-        if piston && velocity[i].abs() < 0.3 * typical {
+        if piston && velocity[i].abs() < stands {
             continue;
         }
-        record.time.push(time[i]);
-        record.value.push(value[i]);
-        record.direction.push(if piston { velocity[i].signum() } else { 1.0 });
-        record.speed.push(velocity[i].abs().max(0.01 * typical));
-        record.since.push(slip - at_change);
-        record.since_time.push(time[i] - time[last]);
-        record.slip.push(slip);
-        record.place.push(place[i]);
-        record.stroke.push(stroke);
-        if let (Some(out), Some(p)) = (record.pressure.as_mut(), &pressure) {
-            out.push(p[i]);
-        }
+        samples.push(Sample {
+            value: value[i],
+            direction: if piston { velocity[i].signum() } else { 1.0 },
+            speed: velocity[i].abs().max(0.01 * typical),
+            since: slip - at_change,
+            since_time: time[i] - time[last],
+            slip,
+            place: place[i],
+            pressure: pressure.as_ref().map(|p| p[i]),
+            stroke,
+        });
     }
-    record
+    samples
 }
 
 /// Slope of the place over a few samples each way \[m/s\].

@@ -10,8 +10,8 @@ pub fn table(record: &FrictionRecord, verdict: &Verdict) -> String {
     let mut out = format!(
         "{}: {} samples, {} strokes or steps, noise {:.3e} {unit}\n",
         record.file,
-        record.value.len(),
-        record.stroke.last().copied().unwrap_or(0),
+        record.samples.len(),
+        record.last_stroke(),
         verdict.noise
     );
     for law in &verdict.laws {
@@ -52,7 +52,7 @@ pub fn table(record: &FrictionRecord, verdict: &Verdict) -> String {
 pub fn document(record: &FrictionRecord, verdict: &Verdict) -> serde_json::Value {
     serde_json::json!({
         "record": record.file,
-        "samples": record.value.len(),
+        "samples": record.samples.len(),
         "noise": verdict.noise,
         "remainder_unknown": verdict.remainder,
         "error_by_quarter": verdict.quarters,

@@ -3,7 +3,7 @@
 use super::design::design;
 use super::fit::{best, Fitted};
 use super::law::Law;
-use super::record::FrictionRecord;
+use super::record::{FrictionRecord, Sample};
 
 /// Independent comparisons per held-out piece: samples of one stroke err together, its quarters do not.
 const NATS_PER_PIECE: f64 = 4.0;
@@ -51,7 +51,7 @@ pub fn explain(record: &FrictionRecord) -> Verdict {
         law.closed = ((before.powi(2) - law.held_out.powi(2)) / open).clamp(-1.0, 1.0);
     }
     laws.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    let spread = deviation(&record.value);
+    let spread = deviation(&record.samples.iter().map(|s| s.value).collect::<Vec<_>>());
     let remainder = laws.first().is_some_and(|l| {
         l.held_out > 3.0 * noise
             && l.held_out.powi(2) > ADEQUATE * spread.powi(2).min(before.powi(2))
@@ -62,34 +62,30 @@ pub fn explain(record: &FrictionRecord) -> Verdict {
 
 /// Strokes, or pieces of equal length on each side of the step; even ones are fitted, odd ones judged.
 fn pieces(record: &FrictionRecord) -> Vec<usize> {
-    let strokes = record.stroke.last().copied().unwrap_or(0) + 1;
+    let samples = &record.samples;
+    let strokes = record.last_stroke() + 1;
     if record.piston && strokes >= 4 {
         // Out and back belong together: two strokes fitted, two judged.
-        return record.stroke.iter().map(|s| s / 2).collect();
+        return samples.iter().map(|s| s.stroke / 2).collect();
     }
-    let count = record.stroke.len();
-    let mut out = Vec::with_capacity(count);
-    for i in 0..count {
-        let first = record.stroke.partition_point(|s| *s < record.stroke[i]);
-        let last = record.stroke.partition_point(|s| *s <= record.stroke[i]);
+    let piece = |(i, sample): (usize, &Sample)| {
+        let first = samples.partition_point(|s| s.stroke < sample.stroke);
+        let last = samples.partition_point(|s| s.stroke <= sample.stroke);
         // After a change things happen at once: pieces of equal share of the logarithm.
         let at = ((i - first) as f64 + 1.0).ln() / ((last - first) as f64 + 1.0).ln();
-        out.push(
-            2 * PIECES * record.stroke[i] + (at * (2 * PIECES) as f64) as usize % (2 * PIECES),
-        );
-    }
-    out
+        2 * PIECES * sample.stroke + (at * (2 * PIECES) as f64) as usize % (2 * PIECES)
+    };
+    samples.iter().enumerate().map(piece).collect()
 }
 
 /// Standard deviation of the noise, in the record's unit.
 fn noise(record: &FrictionRecord) -> f64 {
     // Second differences: blind to slow changes; variance 6σ².
-    let squares: Vec<f64> =
-        record.value.windows(3).map(|w| (w[2] - 2.0 * w[1] + w[0]).powi(2) / 6.0).collect();
-    let mut sorted = squares;
-    sorted.sort_by(f64::total_cmp);
+    let square = |w: &[Sample]| (w[2].value - 2.0 * w[1].value + w[0].value).powi(2) / 6.0;
+    let mut squares: Vec<f64> = record.samples.windows(3).map(square).collect();
+    squares.sort_by(f64::total_cmp);
     // Median of χ² of one degree of freedom: 0.455.
-    (sorted.get(sorted.len() / 2).copied().unwrap_or(0.0) / 0.455).sqrt()
+    (squares.get(squares.len() / 2).copied().unwrap_or(0.0) / 0.455).sqrt()
 }
 
 /// Standard deviation about the mean.
@@ -101,12 +97,12 @@ fn deviation(values: &[f64]) -> f64 {
 /// Root mean square error of a law by quarter of the longest slip since a change.
 fn by_quarter(record: &FrictionRecord, law: &Fitted) -> [f64; 4] {
     let (_, rows) = design(record, law.law, law.memory, law.stretch);
-    let longest = record.since.iter().copied().fold(1e-300, f64::max);
+    let longest = record.samples.iter().map(|s| s.since).fold(1e-300, f64::max);
     let (mut sum, mut count) = ([0.0; 4], [0.0; 4]);
-    for (i, row) in rows.iter().enumerate() {
+    for (sample, row) in record.samples.iter().zip(&rows) {
         let told: f64 = row.iter().zip(&law.coefficients).map(|(x, c)| x * c.1).sum();
-        let k = ((4.0 * record.since[i] / longest) as usize).min(3);
-        sum[k] += (record.value[i] - told).powi(2);
+        let k = ((4.0 * sample.since / longest) as usize).min(3);
+        sum[k] += (sample.value - told).powi(2);
         count[k] += 1.0;
     }
     std::array::from_fn(|k| (sum[k] / f64::max(count[k], 1.0)).sqrt())
@@ -118,32 +114,26 @@ mod tests {
 
     /// A speed step by 10 at row 600 whose friction evolves over 20 µm of slip.
     fn made(evolves: f64) -> FrictionRecord {
-        let count = 1500;
-        let speed: Vec<f64> = (0..count).map(|i| if i < 600 { 1e-6 } else { 1e-5 }).collect();
-        let slip: Vec<f64> = (0..count).map(|i| speed[..i].iter().sum::<f64>() * 0.1).collect();
-        let since: Vec<f64> =
-            (0..count).map(|i| if i < 600 { slip[i] } else { slip[i] - slip[600] }).collect();
-        let value = (0..count)
-            .map(|i| {
-                let wiggle = 1e-4 * ((i * 7919 % 13) as f64 - 6.0) / 6.0;
-                let fresh = if i < 600 { 0.0 } else { evolves * (-since[i] / 20e-6).exp() };
-                0.6 + 0.005 * (speed[i] / 1e-6_f64).ln() + fresh + wiggle
-            })
-            .collect();
-        FrictionRecord {
-            file: "made".into(),
-            time: (0..count).map(|i| 0.1 * i as f64).collect(),
-            value,
-            direction: vec![1.0; count],
-            since_time: (0..count).map(|i| 0.1 * (i % 600) as f64).collect(),
-            stroke: (0..count).map(|i| usize::from(i >= 600)).collect(),
-            place: slip.clone(),
-            slip,
-            since,
-            speed,
-            pressure: None,
-            piston: false,
-        }
+        let speed = |i: usize| if i < 600 { 1e-6 } else { 1e-5 };
+        let slip: Vec<f64> = (0..1500).map(|i| (0..i).map(speed).sum::<f64>() * 0.1).collect();
+        let sample = |i: usize| {
+            let since = if i < 600 { slip[i] } else { slip[i] - slip[600] };
+            let wiggle = 1e-4 * ((i * 7919 % 13) as f64 - 6.0) / 6.0;
+            let fresh = if i < 600 { 0.0 } else { evolves * (-since / 20e-6).exp() };
+            Sample {
+                value: 0.6 + 0.005 * (speed(i) / 1e-6_f64).ln() + fresh + wiggle,
+                direction: 1.0,
+                speed: speed(i),
+                since,
+                since_time: 0.1 * (i % 600) as f64,
+                slip: slip[i],
+                place: slip[i],
+                pressure: None,
+                stroke: usize::from(i >= 600),
+            }
+        };
+        let samples = (0..slip.len()).map(sample).collect();
+        FrictionRecord { file: "made".into(), samples, piston: false }
     }
 
     #[test]

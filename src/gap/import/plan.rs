@@ -183,26 +183,7 @@ fn channels(file: &mut Toml, told: &mut Told) -> (f64, Option<TimeColumn>, Vec<(
     let mut found = Vec::new();
     for (c, name) in CHANNELS.iter().enumerate() {
         let Some(value) = table.remove(*name) else { continue };
-        let what = format!("channels.{name}");
-        let Some(source) = told.part::<Source>(&what, value) else { continue };
-        let noise = match &source.noise_std {
-            Value::String(text) => units::quantity(Dimension::OF_CHANNELS[c], text),
-            other => number(other),
-        };
-        let Some(noise) = noise.filter(|n| *n >= 0.0) else {
-            let allowed = "0 or more, in SI or with a unit such as \"0.25 N\"";
-            told.add(
-                format!("{what}.noise_std"),
-                &source.noise_std.to_string(),
-                allowed,
-                "mend it",
-            );
-            continue;
-        };
-        let meaning = source.meaning.clone().unwrap_or_else(|| format!("column {}", source.column));
-        let mut kept = Toml::new();
-        kept.insert("noise_std".into(), noise.into());
-        kept.insert("meaning".into(), meaning.into());
+        let Some((source, kept)) = channel(c, value, told) else { continue };
         table.insert((*name).into(), kept.into());
         found.push((c, source));
     }
@@ -214,6 +195,26 @@ fn channels(file: &mut Toml, told: &mut Told) -> (f64, Option<TimeColumn>, Vec<(
         told.add("channels", "none of force and edge velocity", &CHANNELS.join(", "), "map one");
     }
     (rate, time, found)
+}
+
+/// Where the channel `c` comes from, and what a campaign file says of it.
+fn channel(c: usize, value: Value, told: &mut Told) -> Option<(Source, Toml)> {
+    let what = format!("channels.{}", CHANNELS[c]);
+    let source: Source = told.part(&what, value)?;
+    let noise = match &source.noise_std {
+        Value::String(text) => units::quantity(Dimension::OF_CHANNELS[c], text),
+        other => number(other),
+    };
+    let Some(noise) = noise.filter(|n| *n >= 0.0) else {
+        let allowed = "0 or more, in SI or with a unit such as \"0.25 N\"";
+        told.add(format!("{what}.noise_std"), &source.noise_std.to_string(), allowed, "mend it");
+        return None;
+    };
+    let meaning = source.meaning.clone().unwrap_or_else(|| format!("column {}", source.column));
+    let mut kept = Toml::new();
+    kept.insert("noise_std".into(), noise.into());
+    kept.insert("meaning".into(), meaning.into());
+    Some((source, kept))
 }
 
 /// Takes `from` and `start` out of `[[runs]]`.
