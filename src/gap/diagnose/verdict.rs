@@ -20,10 +20,13 @@ pub fn verdict(d: &Diagnosis) -> String {
             "{opening} The rest is consistent with one or more of: {}; the data cannot tell which. The likeliest {closing}.",
             d.decision.effects.join(", ")
         ),
-        Kind::Unknown => format!(
-            "{opening} No candidate explains the rest (P(unknown) = {top:.2}); it looks most like module {}.",
-            d.decision.module.as_deref().unwrap_or("none")
-        ),
+        Kind::Unknown => {
+            let nearest = match &d.decision.module {
+                Some(module) => format!("what comes nearest is of the module {module}"),
+                None => "none takes anything off it".to_string(),
+            };
+            format!("{opening} No candidate explains the rest (P(unknown) = {top:.2}); {nearest}.")
+        }
         Kind::Undecidable => format!("{opening} Nothing can be said."),
     }
 }
