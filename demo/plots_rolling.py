@@ -117,7 +117,7 @@ def run_in_edge(run, times, out):
     panels[2].plot(s, run["contact.force.z"], color=VERMILION, label="normal")
     panels[2].set_ylabel("force of the road [N]")
     panels[2].set_xlabel("contact coordinate: belt travel from the middle of the patch [mm]")
-    panels[2].legend(loc="upper right")
+    panels[2].legend(loc="center")
     for phase, time in times.items():
         at = np.interp(time, run["time"], s)
         for panel in panels:
