@@ -94,10 +94,6 @@ fn parabola(points: &[f64], x: f64) -> [f64; 3] {
 
 /// Where the contact nodes stand over the road `motion.position` \[m\] below the clamped face, and how they move, from
 /// their displacements.
-#[multiversion(targets(
-    "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
-    "x86_64+avx2+fma+bmi1+bmi2"
-))]
 pub(super) fn place(
     st: &mut Stations,
     linear: &Linear,
@@ -128,7 +124,8 @@ pub(super) fn place(
     }
 }
 
-/// Sums over the face, and pressure \[Pa\] and sliding speed \[m/s\] at the stations.
+/// Sums over the face, and pressure \[Pa\] and sliding speed \[m/s\] at the stations. For the instruction set at hand, as
+/// fused products would be calls without one.
 #[multiversion(targets(
     "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
     "x86_64+avx2+fma+bmi1+bmi2"
@@ -174,10 +171,6 @@ pub(super) fn sum(st: &mut Stations, face: &Face, worn: &Aligned, out: &mut Outp
 
 /// Σ Γ_m ẅ_m of the modes: forces \[N\] along x and z and moment \[N m\] that accelerate them against the clamped face;
 /// `rate` is their velocities' rate without what the face's acceleration `prescribed` \[m/s²\] takes off.
-#[multiversion(targets(
-    "x86_64+avx512f+avx512dq+avx512vl+avx512bw+avx2+fma+bmi1+bmi2",
-    "x86_64+avx2+fma+bmi1+bmi2"
-))]
 pub(super) fn inertia(coupling: &[Aligned; 3], rate: &Aligned, prescribed: [f64; 2]) -> [f64; 3] {
     let rate = rate.packs();
     let [gx, gz, gy] = coupling;
