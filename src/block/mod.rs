@@ -131,7 +131,13 @@ impl TreadBlock {
         self.observe();
         self.memory.follow_belt(&self.params.effect, reached, &self.outputs);
         self.memory.show(&self.params.effect, &mut self.outputs);
-        outcome
+        outcome?;
+        if self.outputs.are_finite() {
+            Ok(())
+        } else {
+            // Only a state that was restored damaged leads here: a step judges its own motion.
+            Err(Fault::NotFinite { what: "the outputs".into(), time: self.state.time })
+        }
     }
 
     /// Lets the block rest under its load for `duration` \[s\] without the time going on: contacts age

@@ -48,6 +48,26 @@ pub struct Outputs {
     pub deflection_velocity: f64,
 }
 
+impl Outputs {
+    /// Is every output a number?
+    pub(super) fn are_finite(&self) -> bool {
+        let pairs = [
+            self.force,
+            self.contact_force,
+            self.run_in_displacement,
+            self.run_in_velocity,
+            self.run_out_displacement,
+            self.run_out_velocity,
+            [self.moment_y, self.friction_coefficient],
+            [self.friction_power, self.carriage_z],
+            [self.wear_mass, self.wear_depth_max],
+            [self.deflection, self.deflection_velocity],
+        ];
+        let stations = self.pressure.iter().chain(&self.sliding_speed);
+        pairs.as_flattened().iter().chain(stations).all(|x| x.is_finite())
+    }
+}
+
 impl Default for Outputs {
     fn default() -> Self {
         Self {
