@@ -51,20 +51,41 @@ pub struct Outputs {
 impl Outputs {
     /// Is every output a number?
     pub(super) fn are_finite(&self) -> bool {
+        // Every field by name, so that a new one cannot be forgotten.
+        let Self {
+            force,
+            moment_y,
+            contact_force,
+            run_in_displacement,
+            run_in_velocity,
+            run_out_displacement,
+            run_out_velocity,
+            friction_coefficient,
+            stick_fraction,
+            area_fraction,
+            friction_power,
+            pressure,
+            sliding_speed,
+            wear_mass,
+            wear_depth_max,
+            carriage_z,
+            deflection,
+            deflection_velocity,
+        } = self;
         let pairs = [
-            self.force,
-            self.contact_force,
-            self.run_in_displacement,
-            self.run_in_velocity,
-            self.run_out_displacement,
-            self.run_out_velocity,
-            [self.moment_y, self.friction_coefficient],
-            [self.friction_power, self.carriage_z],
-            [self.wear_mass, self.wear_depth_max],
-            [self.deflection, self.deflection_velocity],
+            *force,
+            *contact_force,
+            *run_in_displacement,
+            *run_in_velocity,
+            *run_out_displacement,
+            *run_out_velocity,
+            [*moment_y, *friction_coefficient],
+            [*stick_fraction, *area_fraction],
+            [*friction_power, *carriage_z],
+            [*wear_mass, *wear_depth_max],
+            [*deflection, *deflection_velocity],
         ];
-        let stations = self.pressure.iter().chain(&self.sliding_speed);
-        pairs.as_flattened().iter().chain(stations).all(|x| x.is_finite())
+        pairs.as_flattened().iter().chain(pressure).chain(sliding_speed).all(|x| x.is_finite())
     }
 }
 

@@ -1,10 +1,12 @@
 //! Drives that hold neither speed nor load: what a made campaign may have and no candidate effect describes.
 
+use crate::block::TreadBlock;
 use crate::drive::{Cubic, Segment};
-use crate::scenario::Slide;
+use crate::error::Fault;
+use crate::scenario::{Plan, Slide};
 
 /// What a rig's drives add to speed and load: sines, as shares of them.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Ripple {
     /// Amplitude of the road speed over the road speed \[-\].
     pub(super) speed: f64,
@@ -16,8 +18,25 @@ pub(super) struct Ripple {
 const RIPPLE: f64 = 150.0;
 
 impl Ripple {
+    /// As [`crate::scenario::go_on`], with the ripple on top of what `slide` says.
+    pub(super) fn go_on(
+        self,
+        block: &mut TreadBlock,
+        slide: &Slide,
+        plan: &Plan,
+        mut visit: impl FnMut(f64, &TreadBlock) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        visit(0.0, block)?;
+        for k in 0..plan.rows() {
+            let t = k as f64 * plan.step;
+            block.advance(plan.step, &self.segment(slide, t, plan.step))?;
+            visit(t + plan.step, block)?;
+        }
+        Ok(())
+    }
+
     /// Motion and load of a block that slides as `slide` says, over the `h` \[s\] after `t` \[s\].
-    pub(super) fn segment(self, slide: &Slide, t: f64, h: f64) -> Segment {
+    fn segment(self, slide: &Slide, t: f64, h: f64) -> Segment {
         let omega = 2.0 * std::f64::consts::PI * RIPPLE;
         let added = self.speed * slide.speed;
         let speed = |t: f64| slide.road_speed(t) + added * (omega * t).sin();

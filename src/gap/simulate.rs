@@ -88,12 +88,12 @@ pub struct Simulator {
     plan: Plan,
     reduction: Arc<Reduction>,
     fineness: Fineness,
-    ripple: Ripple,
+    ripple: Option<Ripple>,
 }
 
 impl Simulator {
-    /// The same rig with a ripple of its drives.
-    pub(super) fn rippled(self, ripple: Ripple) -> Self {
+    /// The same rig, its drives with a ripple or without one.
+    pub(super) fn rippled(self, ripple: Option<Ripple>) -> Self {
         Self { ripple, ..self }
     }
 
@@ -113,7 +113,7 @@ impl Simulator {
         let mut params = nominal(plan);
         cut(&mut params, fineness);
         let reduction = Arc::new(Shape::of(&params).reduce()?);
-        Ok(Self { plan: plan.clone(), reduction, fineness, ripple: Ripple::default() })
+        Ok(Self { plan: plan.clone(), reduction, fineness, ripple: None })
     }
 
     /// The run as the rig would have measured it up to `until` \[s\], without noise, at the campaign's
@@ -160,38 +160,21 @@ impl Simulator {
     ) -> Result<(), Fault> {
         let step = 1.0 / self.plan.sampling_rate;
         let slide = motion(&self.plan, spec);
-        if self.ripple != Ripple::default() {
-            return self.slide_rippled(block, &slide, rows(until, step), sampler);
-        }
-        let scenario = Scenario::Slide(slide);
+        let scenario = Scenario::Slide(slide.clone());
         // Whole samples only: a scenario would end with a shorter step.
         let duration = rows(until, step) as f64 * step;
         let plan = scenario::Plan { step, duration, inputs: Inputs::Exact };
         block.initialize(scenario.start(), scenario.pose(scenario.start()))?;
         // The block is settled: a rest before the road starts only ages and cools the contact.
         block.rest(spec.dwell_s);
-        scenario::go_on(block, &scenario, &plan, |t, block| {
+        let visit = |t: f64, block: &TreadBlock| {
             sampler.push(t, block);
             Ok(())
-        })
-    }
-
-    fn slide_rippled(
-        &self,
-        block: &mut TreadBlock,
-        slide: &Slide,
-        rows: usize,
-        sampler: &mut Sampler,
-    ) -> Result<(), Fault> {
-        let step = 1.0 / self.plan.sampling_rate;
-        block.initialize(0.0, Pose { load: slide.load, ..Pose::default() })?;
-        sampler.push(0.0, block);
-        for k in 0..rows {
-            let t = k as f64 * step;
-            block.advance(step, &self.ripple.segment(slide, t, step))?;
-            sampler.push(t + step, block);
+        };
+        match self.ripple {
+            Some(ripple) => ripple.go_on(block, &slide, &plan, visit),
+            None => scenario::go_on(block, &scenario, &plan, visit),
         }
-        Ok(())
     }
 }
 

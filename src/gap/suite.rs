@@ -188,19 +188,23 @@ fn add_effect(effect: usize, severity: f64, params: &mut Params, noise: &mut Noi
     spec.apply(form, &values, params);
 }
 
+/// How far something outside the list is off, as a share.
+fn share_off(severity: f64) -> f64 {
+    0.04 * (1.0 + severity)
+}
+
 /// What is wrong with the drives.
-fn ripple(truth: Truth, severity: f64) -> Ripple {
-    let share = 0.04 * (1.0 + severity);
+fn ripple(truth: Truth, severity: f64) -> Option<Ripple> {
     match truth {
-        Truth::SpeedRipple => Ripple { speed: share, load: 0.0 },
-        Truth::LoadRipple => Ripple { speed: 0.0, load: share },
-        _ => Ripple::default(),
+        Truth::SpeedRipple => Some(Ripple { speed: share_off(severity), load: 0.0 }),
+        Truth::LoadRipple => Some(Ripple { speed: 0.0, load: share_off(severity) }),
+        _ => None,
     }
 }
 
 /// What is wrong with the measurement itself.
 fn distort(truth: Truth, severity: f64, record: &mut Record) {
-    let share = 1.0 + 0.04 * (1.0 + severity);
+    let share = 1.0 + share_off(severity);
     match truth {
         Truth::Gain => {
             if let Some(force) = record.channel[campaign::FRICTION].as_mut() {
@@ -224,7 +228,8 @@ fn distort(truth: Truth, severity: f64, record: &mut Record) {
                 column.iter_mut().enumerate().for_each(|(i, f)| *f += full * i as f64 / count);
             }
         }
-        _ => {}
+        Truth::None | Truth::Effect(_) | Truth::Pair(_) => {}
+        Truth::SpeedRipple | Truth::LoadRipple => {}
     }
 }
 

@@ -205,7 +205,7 @@ pub fn csv(tried: &[Tried]) -> String {
     out
 }
 
-/// The comparison as JSON, an object per law with the columns of [`csv()`].
+/// The comparison as JSON, an object per law with the figures of [`csv()`].
 pub fn json(tried: &[Tried]) -> Value {
     let of = |t: &Tried| {
         json!({
