@@ -1,6 +1,6 @@
 //! Keeps every symbol but the interface's own inside the shared library, and notes the version.
 
-use std::{env, fs, path::PathBuf, process::Command};
+use std::{env, fs, process::Command};
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
@@ -10,18 +10,11 @@ fn main() {
 
 /// `fmi-sys` brings a `callback_log` that would stand beside the `fmi2*` functions in every FMU.
 ///
-/// The compiler's own version script exports every C symbol of every crate. lld joins this one to it
-/// and lets the exact local name win; zig's linker heeds only this one.
-const MAP: &str = "{\n  global: fmi2*;\n  local: callback_log; callback_logger_handler; *;\n};\n";
-
+/// The compiler's own version script exports every C symbol of every crate. A second script is refused by
+/// GNU's linker, while all linkers but zig's know this (`packaging/zigcc.sh` translates it).
 fn hide_strangers() {
-    if env::var("CARGO_CFG_TARGET_OS").as_deref() != Ok("linux") {
-        return;
-    }
-    let Ok(out) = env::var("OUT_DIR").map(PathBuf::from) else { return };
-    let script = out.join("exports.map");
-    if fs::write(&script, MAP).is_ok() {
-        println!("cargo:rustc-cdylib-link-arg=-Wl,--version-script={}", script.display());
+    if env::var("CARGO_CFG_TARGET_OS").as_deref() == Ok("linux") {
+        println!("cargo:rustc-cdylib-link-arg=-Wl,--exclude-libs,ALL");
     }
 }
 

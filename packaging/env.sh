@@ -14,7 +14,7 @@ zig_works() {
 
 # A mark of everything that a library is built from: a library with another one is out of date.
 source_mark() {
-    find src build.rs Cargo.toml Cargo.lock -type f | LC_ALL=C sort | xargs cat | sha256sum | cut -c1-16
+    find src build.rs Cargo.toml Cargo.lock packaging/exports.map -type f | LC_ALL=C sort | xargs cat | sha256sum | cut -c1-16
 }
 
 # Builds shared libraries for the FMU, without debug symbols; arguments go to cargo. Prints the folder
