@@ -116,14 +116,14 @@ fn profile(reduction: &Reduction, params: &Params) -> Vec<f64> {
 }
 
 /// The integrator.
-pub(super) fn integrator(linear: &Linear, face: &Face, params: &Params) -> Integrator {
+pub(super) fn integrator(linear: &Linear, params: &Params) -> Integrator {
     let solver = &params.solver;
     let settings = Settings {
         tolerance: solver.tolerance,
         max_step: solver.max_step,
         min_step: solver.min_step,
     };
-    Integrator::new(linear, settings, face.stiffness_at(params.friction.reference_pressure))
+    Integrator::new(linear, settings, params.friction.reference_pressure)
 }
 
 /// Reads a measured characteristic: CSV with the columns pressure_pa, speed_m_s, mu.

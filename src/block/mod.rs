@@ -62,7 +62,7 @@ impl TreadBlock {
         check::checked(params)?;
         let linear = build::linear(&reduction, params);
         let face = build::face(&reduction, params)?;
-        let integrator = build::integrator(&linear, &face, params);
+        let integrator = build::integrator(&linear, params);
         let memory = Memory::new(params, &linear, &face.area);
         let mut block = Self {
             state: State::new(&linear),
@@ -92,7 +92,7 @@ impl TreadBlock {
         self.state = State::new(&self.linear);
         self.state.time = time;
         self.wear_mass = 0.0;
-        self.integrator = build::integrator(&self.linear, &self.face, &self.params);
+        self.integrator = build::integrator(&self.linear, &self.params);
         equilibrium::settle(&self.linear, &self.face, pose, &mut self.state)?;
         self.memory.reset(&self.params.effect, &mut self.state);
         self.motion = kinematics(&Segment::still(pose), 0.0);

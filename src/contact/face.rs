@@ -9,6 +9,8 @@ use multiversion::multiversion;
 
 /// Gap \[m\] of the padding nodes that fill the last pack: out of reach of any road.
 const OUT_OF_REACH: f64 = 1e3;
+/// Pressure at an edge over that which the face bears on average \[-\].
+const PRESSED_EDGE: f64 = 3.0;
 
 /// The tread face and the laws that hold on it. Vectors per node are padded to full packs.
 #[derive(Clone, Debug)]
@@ -124,15 +126,16 @@ impl Face {
         }
     }
 
-    /// Does the pressure depend on the approach speed?
-    pub fn damped(&self) -> bool {
-        self.damping > 0.0 || self.viscosity > 0.0
-    }
-
-    /// Contact stiffness of each node at the pressure `p` \[Pa\], padded \[N/m\].
-    pub fn stiffness_at(&self, p: f64) -> Vec<f64> {
-        let slope = normal::pressure(&self.contact, normal::compression(&self.contact, p)).1;
-        self.area.iter().map(|area| area * slope).collect()
+    /// −∂(normal)/∂(normal speed) of each node at rest under the pressure `p` \[Pa\], padded \[N s/m\]; the
+    /// compression changes by −`a` \[s\] per normal speed.
+    ///
+    /// That of a damper which grows with the pressure is taken for [`PRESSED_EDGE`] times `p`: an iteration that
+    /// assumes too steep a slope creeps to the solution, one that assumes too flat a slope leaves it.
+    pub fn approach_slopes<'a>(&'a self, p: f64, a: f64) -> impl Iterator<Item = f64> + 'a {
+        let compression = Pack::splat(normal::compression(&self.contact, p));
+        let (_, by_lift) = self.pressure(compression, a, Pack::default());
+        let slope = (PRESSED_EDGE - 1.0) * self.damping * p - by_lift.0[0];
+        self.area.iter().map(move |area| area * slope)
     }
 
     /// Evaluates all nodes into `out`; returns the highest pressure \[Pa\].

@@ -1,5 +1,6 @@
 //! The Newton iteration of a stage: which direction it takes, how far it goes, and when it stops.
 
+use super::full::full_direction;
 use super::kinematics::Kinematics;
 use super::matrices::StageMatrices;
 use super::stage::Stage;
@@ -36,8 +37,6 @@ impl Stage {
         motion: &Kinematics,
         factor: &Aligned,
     ) -> Convergence {
-        // Contact damping makes the normal slopes of nodes differ by far more than one elimination for all serves.
-        let flat = motion.sin_cos[0] == 0.0 && !face.damped();
         let mut convergence = Convergence { iterations: 0, change: 0.0, converged: true };
         let mut guess_left = true;
         let mut changes = [f64::INFINITY; 2];
@@ -57,10 +56,10 @@ impl Stage {
             // The elimination of the normal velocities converges fast where the contact is as
             // stiff as it assumes; where it does not, the full matrix serves.
             let iteration = convergence.iterations;
-            let solved = if flat && iteration <= FLAT_ITERATIONS {
-                self.flat_direction(n, &matrices.flat, iteration, changes)
+            let solved = if iteration <= FLAT_ITERATIONS {
+                self.flat_direction(n, &matrices.flat, motion, iteration, changes)
             } else {
-                self.full_direction(matrices, motion, iteration, changes)
+                full_direction(self, matrices, motion, iteration, changes)
             };
             if !solved {
                 convergence.converged = false;

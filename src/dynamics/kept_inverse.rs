@@ -1,7 +1,7 @@
 //! The inverse of the tangential Newton matrix, kept from one iteration and step to the next: mended node by node
 //! where a slope has changed much, corrected while it is applied for what is left, made anew where neither serves.
 
-use super::matrices::{columns, FlatMatrices};
+use super::flat::{columns, FlatMatrices};
 use super::{dense, gauss_jordan};
 use crate::pack::{Aligned, Pack, LANES};
 

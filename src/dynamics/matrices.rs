@@ -2,8 +2,13 @@
 //! matrix of the contact degrees of freedom.
 
 use super::dense;
+use super::flat::FlatMatrices;
 use super::linear::Linear;
-use crate::pack::{Aligned, LANES};
+use crate::pack::Aligned;
+
+/// Angle \[rad\] between the frames for which S is split while a block turns whose S does not: half of it is how
+/// far the road may lie off the frame.
+const FRAMES: f64 = 0.01;
 
 /// For stage equations with coefficient a \[s\] (γh/2 of the step h).
 #[derive(Clone, Debug)]
@@ -12,7 +17,7 @@ pub struct StageMatrices {
     pub a: f64,
     /// Stiffness factor that they hold for \[-\].
     pub stiffness_factor: f64,
-    /// Angle \[rad\] that they hold for (matters only where the clamped face is free).
+    /// Angle \[rad\] of the block in the frame of the split, and where the clamped face is free in that of all.
     pub angle: f64,
     /// sₘ = 1/(1 + aβω² + a²ω²κ) per mode \[-\].
     pub s: Aligned,
@@ -21,7 +26,7 @@ pub struct StageMatrices {
     /// S = W⁻¹ \[N s/m\], W = a Φ s Φᵀ + a q N⁻¹ qᵀ the Delassus matrix: contact velocities per contact
     /// force, both in the block's frame, x of all nodes then z, without padding.
     pub inverse_delassus: Aligned,
-    /// S split for a block that is not turned.
+    /// S split in normal and tangential velocities.
     pub flat: FlatMatrices,
     /// Coupling Γ̃ to each free direction of the clamped face, direction after direction.
     pub base_coupling: Aligned,
@@ -29,23 +34,6 @@ pub struct StageMatrices {
     pub q: Aligned,
     /// N⁻¹ \[1/kg\], 2 × 2.
     pub n_inverse: [f64; 4],
-}
-
-/// S = \[S_tt S_tn; S_nt S_nn\] with the normal velocities eliminated (theory eq. 3.9): what one vector
-/// is multiplied by stands in one matrix, column by column of 2 · stride numbers.
-#[derive(Clone, Debug)]
-pub struct FlatMatrices {
-    /// Slope of the normal force by the normal velocity that the elimination assumes, per node
-    /// \[N s/m\].
-    pub normal_slope: Aligned,
-    /// Diagonal of B \[N s/m\]: how a node resists to sliding faster than the others.
-    pub resistance: Aligned,
-    /// \[B; Pᵀ\], B = S_tt − P S_nt symmetric, P = S_tn A⁻¹.
-    pub by_tangential: Aligned,
-    /// \[P; A⁻¹\], A⁻¹ = (S_nn + normal slope)⁻¹ symmetric.
-    pub by_normal: Aligned,
-    /// A⁻¹ and S_tn A⁻¹ while they are made, without padding.
-    room: [Aligned; 2],
 }
 
 impl StageMatrices {
@@ -68,38 +56,43 @@ impl StageMatrices {
 
     /// Do they hold for these arguments?
     pub fn fit(&self, linear: &Linear, a: f64, stiffness_factor: f64, angle: f64) -> bool {
-        self.a == a
-            && self.stiffness_factor == stiffness_factor
-            && (linear.base.is_empty() || self.angle == angle)
+        self.same_block(a, stiffness_factor) && self.angle == frame(linear, angle)
     }
 
-    /// Computes them (theory eqs. 3.5 to 3.9); `contact_stiffness` \[N/m\] per node is
-    /// what the elimination assumes. `false` if the block is numerically singular.
+    fn same_block(&self, a: f64, stiffness_factor: f64) -> bool {
+        self.a == a && self.stiffness_factor == stiffness_factor
+    }
+
+    /// Computes them (theory eqs. 3.5 to 3.9); the elimination assumes
+    /// `normal_slopes` \[N s/m\] of the nodes' normal forces by their normal speeds. `false` if the block is numerically singular.
     pub fn compute(
         &mut self,
         linear: &Linear,
         a: f64,
         stiffness_factor: f64,
         angle: f64,
-        contact_stiffness: &[f64],
+        normal_slopes: impl Iterator<Item = f64>,
     ) -> bool {
-        (self.a, self.stiffness_factor, self.angle) = (a, stiffness_factor, angle);
+        let turned_only = linear.base.is_empty() && self.same_block(a, stiffness_factor);
+        self.angle = frame(linear, angle);
+        if !turned_only && !self.invert(linear, a, stiffness_factor) {
+            return false;
+        }
+        self.flat.split(&self.inverse_delassus, self.angle, normal_slopes)
+    }
+
+    /// All but the split; `false` if the block is numerically singular.
+    fn invert(&mut self, linear: &Linear, a: f64, stiffness_factor: f64) -> bool {
+        (self.a, self.stiffness_factor) = (a, stiffness_factor);
         let kappa = stiffness_factor
             + linear.branches.iter().map(|b| b.share / (1.0 + a / b.time)).sum::<f64>();
         for (m, omega2) in linear.omega2.iter().enumerate() {
             self.a_omega2[m] = a * omega2 * kappa;
             self.s[m] = 1.0 / (1.0 + a * linear.damping * omega2 + a * self.a_omega2[m]);
         }
-        self.free_face(linear, a, angle);
+        self.free_face(linear, a, self.angle);
         self.delassus(linear, a);
         dense::invert(&mut self.inverse_delassus, 2 * linear.nodes)
-            && self.flat.split(
-                &self.inverse_delassus,
-                a,
-                contact_stiffness,
-                linear.nodes,
-                linear.stride,
-            )
     }
 
     /// Γ̃, q and N⁻¹.
@@ -164,66 +157,15 @@ impl StageMatrices {
     }
 }
 
-impl FlatMatrices {
-    /// Room for `nodes` nodes, `stride` with the padding.
-    pub(super) fn new(nodes: usize, stride: usize) -> Self {
-        Self {
-            normal_slope: Aligned::zeros(stride),
-            resistance: Aligned::zeros(stride),
-            by_tangential: Aligned::zeros(2 * stride * columns(nodes)),
-            by_normal: Aligned::zeros(2 * stride * columns(nodes)),
-            room: [(); 2].map(|()| Aligned::zeros(nodes * nodes)),
-        }
+/// Angle \[rad\] of the frame in which a block turned by `angle` is split: its own where all depends on it, else one
+/// of few, because a block that rolls turns in every step. It hangs on nothing but the angle, so that restored
+/// blocks go on with the same bits.
+fn frame(linear: &Linear, angle: f64) -> f64 {
+    if linear.base.is_empty() {
+        (angle / FRAMES).round() * FRAMES
+    } else {
+        angle
     }
-
-    fn split(
-        &mut self,
-        s: &[f64],
-        a: f64,
-        contact_stiffness: &[f64],
-        n: usize,
-        stride: usize,
-    ) -> bool {
-        let full = |i: usize, j: usize| s[i * 2 * n + j];
-        for (slope, k) in self.normal_slope.iter_mut().zip(contact_stiffness) {
-            *slope = a * k;
-        }
-        let [a_inverse, p] = &mut self.room;
-        for i in 0..n {
-            for j in 0..n {
-                a_inverse[i * n + j] = full(n + i, n + j);
-            }
-            a_inverse[i * n + i] += self.normal_slope[i];
-        }
-        if !dense::invert(a_inverse, n) {
-            return false;
-        }
-        self.by_tangential.fill(0.0);
-        self.by_normal.fill(0.0);
-        for i in 0..n {
-            for j in 0..n {
-                let sum = (0..n).map(|k| full(i, n + k) * a_inverse[k * n + j]).sum();
-                p[i * n + j] = sum;
-                self.by_normal[j * 2 * stride + i] = sum;
-                self.by_normal[j * 2 * stride + stride + i] = a_inverse[i * n + j];
-                self.by_tangential[i * 2 * stride + stride + j] = sum;
-            }
-        }
-        for i in 0..n {
-            for j in 0..=i {
-                let sum: f64 = (0..n).map(|k| p[i * n + k] * full(n + k, j)).sum();
-                self.by_tangential[i * 2 * stride + j] = full(i, j) - sum;
-                self.by_tangential[j * 2 * stride + i] = full(i, j) - sum;
-            }
-            self.resistance[i] = self.by_tangential[i * 2 * stride + i];
-        }
-        true
-    }
-}
-
-/// Columns of a matrix per contact node: an even number, and a full pack, which is compiled without a loop, of few.
-pub(super) fn columns(nodes: usize) -> usize {
-    nodes.next_multiple_of(2).max(LANES)
 }
 
 /// Unit vector of a road axis (0: along, 1: up) in the frame of a block turned by `angle` \[rad\].

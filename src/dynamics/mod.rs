@@ -1,8 +1,11 @@
 //! Motion of the reduced block: decoupled linear part, implicit contact and friction, adaptive steps.
 
 pub mod dense;
+mod elimination;
 pub mod energy;
 pub mod equilibrium;
+pub mod flat;
+mod full;
 pub mod gauss_jordan;
 pub mod iteration;
 pub mod kept_inverse;
@@ -14,7 +17,6 @@ pub mod stage;
 pub mod state;
 pub mod step;
 pub mod tr_bdf2;
-mod turned;
 
 pub use energy::Ledger;
 pub use kinematics::{kinematics, Kinematics};

@@ -1,13 +1,13 @@
-//! The Newton direction of a block that is not turned, with the normal velocities eliminated, and what directions
-//! share.
+//! The Newton direction with the normal velocities eliminated, and what directions share.
 
-use super::dense;
+use super::flat::{turn, FlatMatrices, Turn};
 use super::kept_inverse::{Closeness, KeptInverse};
+use super::kinematics::Kinematics;
 use super::linear::Linear;
-use super::matrices::FlatMatrices;
 use super::stage::Stage;
+use super::{dense, elimination};
 use crate::contact::Traction;
-use crate::pack::{larger, Aligned, Pack};
+use crate::pack::{larger, Aligned, Pack, LANES};
 
 /// Largest fall of friction with speed that a direction follows, as a share of the block's own
 /// resistance: far from the solution the tangent of a steeper fall overshoots, near it only the
@@ -54,6 +54,7 @@ pub(super) struct Newton {
     pub(super) residual: Aligned,
     /// −∂(tangential)/∂(tangential speed) that the direction follows \[N s/m\].
     pub(super) followed: Aligned,
+    /// Full matrix and right-hand side, row by row, see [`elimination::solve_rows`].
     pub(super) matrix: Aligned,
     pub(super) inverse: KeptInverse,
     /// Changes shrink by this factor per iteration, as far as is known \[-\].
@@ -62,6 +63,7 @@ pub(super) struct Newton {
     pub(super) accuracy: f64,
     /// No tangent is steeper than the first of [`STEEPEST_FALL`], in all iterations.
     pub(super) gentle: bool,
+    /// Solution with the full matrix, without padding between x and z.
     pub(super) compact: Aligned,
     /// −∂f/∂v per node in the block's frame: xx, xz, zx, zz \[N s/m\].
     pub(super) slopes: [Aligned; 4],
@@ -85,12 +87,12 @@ impl Newton {
             of_normal: Aligned::zeros(2 * stride),
             residual: row(),
             followed: row(),
-            matrix: Aligned::zeros(4 * nodes * nodes),
+            matrix: Aligned::zeros(2 * nodes * elimination::width(2 * nodes) * LANES),
             inverse: KeptInverse::new(nodes, stride),
             contraction: WORST_CONTRACTION,
             accuracy: ACCURACY[0],
             gentle: false,
-            compact: Aligned::zeros(2 * nodes),
+            compact: Aligned::zeros(elimination::width(2 * nodes) * LANES),
             slopes: [row(), row(), row(), row()],
             most: Pack::default(),
             inside: Aligned::padded(&vec![1.0; nodes], stride, 0.0),
@@ -188,40 +190,36 @@ impl Stage {
     /// With d = v − v_free, φ = f_n + G₀ d_n and e = A⁻¹ φ − d_n − Pᵀ d_t:
     /// (B + g − c Pᵀ) δ_t = f_t − B d_t − P φ − c e, then δ_n = e − Pᵀ δ_t, where −g and −c are the
     /// slopes of the tangential forces by the tangential and the normal speed (theory eq. 3.9).
+    ///
+    /// All in the frame of the split, from which the road's may be turned by so little that its slopes serve.
     #[inline(always)]
     pub(super) fn flat_direction(
         &mut self,
         n: usize,
         m: &FlatMatrices,
+        motion: &Kinematics,
         iteration: usize,
         changes: Changes,
     ) -> bool {
-        let (newton, t) = (&mut self.newton, &self.traction);
-        if !newton.prepare(n, m, t, iteration, changes) {
+        if !self.newton.prepare(n, m, &self.traction, iteration, changes) {
             return false;
         }
-        let (v, v_free) = (&self.v.packs()[..2 * n], &self.v_free.packs()[..2 * n]);
-        let (tangential, f_n) = (&t.tangential.packs()[..n], &t.normal.packs()[..n]);
-        let normal_slope = &m.normal_slope.packs()[..n];
-        let difference = &mut newton.difference.packs_mut()[..2 * n];
-        let normal = &mut newton.normal.packs_mut()[..n];
-        for k in 0..n {
-            difference[k] = v[k] - v_free[k];
-            difference[n + k] = v[n + k] - v_free[n + k];
-            normal[k] = normal_slope[k].mul_add(difference[n + k], f_n[k]);
-        }
+        let frame = m.turn(motion);
+        self.into_frame(n, m, frame.as_ref());
+        let (newton, force) = (&mut self.newton, &self.force.packs()[..2 * n]);
+        let difference = &newton.difference.packs()[..2 * n];
         // B d_t and Pᵀ d_t, P φ and A⁻¹ φ.
         let of_tangential = &mut newton.of_tangential.packs_mut()[..2 * n];
         let of_normal = &mut newton.of_normal.packs_mut()[..2 * n];
         dense::multiply(of_tangential, m.by_tangential.packs(), &difference[..n]);
-        dense::multiply(of_normal, m.by_normal.packs(), normal);
-        let coupling = &t.coupling.packs()[..n];
+        dense::multiply(of_normal, m.by_normal.packs(), &newton.normal.packs()[..n]);
+        let coupling = &self.traction.coupling.packs()[..n];
         let residual = &mut newton.residual.packs_mut()[..n];
         let direction_n = &mut newton.direction.packs_mut()[n..2 * n];
         for k in 0..n {
             // The normal change if the tangential one were none.
             direction_n[k] = of_normal[n + k] - difference[n + k] - of_tangential[n + k];
-            let left = tangential[k] - of_tangential[k] - of_normal[k];
+            let left = force[k] - of_tangential[k] - of_normal[k];
             residual[k] = coupling[k].mul_add(direction_n[k], -left);
         }
         newton.inverse.solve(
@@ -233,18 +231,54 @@ impl Stage {
             &mut newton.direction.packs_mut()[..n],
             &mut newton.of_step.packs_mut()[..2 * n],
         );
-        // What the linear equations make of the forces: f_t = B d_t + P φ at the end of the direction.
-        let (direction_t, direction_n) = newton.direction.packs_mut()[..2 * n].split_at_mut(n);
+        self.out_of_frame(n, m, frame.as_ref());
+        true
+    }
+
+    /// v − v_free, the tractions (as `force`) and φ, in the frame of the split.
+    #[inline(always)]
+    fn into_frame(&mut self, n: usize, m: &FlatMatrices, frame: Option<&Turn>) {
+        let (newton, t) = (&mut self.newton, &self.traction);
+        let (v, v_free) = (&self.v.packs()[..2 * n], &self.v_free.packs()[..2 * n]);
+        let (tangential, f_n) = (&t.tangential.packs()[..n], &t.normal.packs()[..n]);
+        let normal_slope = &m.normal_slope.packs()[..n];
+        let difference = &mut newton.difference.packs_mut()[..2 * n];
+        let force = &mut self.force.packs_mut()[..2 * n];
+        for k in 0..n {
+            difference[k] = v[k] - v_free[k];
+            difference[n + k] = v[n + k] - v_free[n + k];
+            (force[k], force[n + k]) = (tangential[k], f_n[k]);
+        }
+        if let Some(frame) = frame {
+            turn(difference, n, frame.of_block);
+            turn(force, n, frame.of_road);
+        }
+        let normal = &mut newton.normal.packs_mut()[..n];
+        for k in 0..n {
+            normal[k] = normal_slope[k].mul_add(difference[n + k], force[n + k]);
+        }
+    }
+
+    /// The whole direction, and what the linear equations make of the forces at its end, f_t = B d_t + P φ, in the
+    /// block's frame.
+    #[inline(always)]
+    fn out_of_frame(&mut self, n: usize, m: &FlatMatrices, frame: Option<&Turn>) {
+        let newton = &mut self.newton;
+        let direction = &mut newton.direction.packs_mut()[..2 * n];
         let (of_tangential, of_normal) =
             (&newton.of_tangential.packs()[..n], &newton.of_normal.packs()[..n]);
         let of_step = &newton.of_step.packs()[..2 * n];
+        let normal_slope = &m.normal_slope.packs()[..n];
         let force = &mut self.force.packs_mut()[..2 * n];
         for k in 0..n {
-            direction_n[k] += of_step[n + k];
+            direction[n + k] += of_step[n + k];
             force[k] = of_tangential[k] + of_normal[k] - of_step[k];
-            force[n + k] = f_n[k] - normal_slope[k] * direction_n[k];
-            direction_t[k] = -direction_t[k];
+            force[n + k] = force[n + k] - normal_slope[k] * direction[n + k];
+            direction[k] = -direction[k];
         }
-        true
+        if let Some(frame) = frame {
+            turn(direction, n, frame.back());
+            turn(force, n, frame.back());
+        }
     }
 }

@@ -50,8 +50,8 @@ pub struct Statistics {
 #[derive(Clone, Debug)]
 pub struct Integrator {
     settings: Settings,
-    /// Contact stiffness of each node that the elimination of the normal velocities assumes \[N/m\].
-    contact_stiffness: Vec<f64>,
+    /// Pressure \[Pa\] for whose contact stiffness the normal velocities are eliminated.
+    typical_pressure: f64,
     matrices: Vec<StageMatrices>,
     last_h: f64,
     /// The state was set from outside since the last step.
@@ -64,14 +64,13 @@ pub struct Integrator {
 impl Integrator {
     /// An integrator for `linear`.
     ///
-    /// `contact_stiffness` \[N/m\] is that of each node under its typical pressure:
-    /// the solver converges the faster, the nearer they are.
-    pub fn new(linear: &Linear, settings: Settings, contact_stiffness: Vec<f64>) -> Self {
+    /// The solver converges the faster, the nearer the pressures are to `typical_pressure` \[Pa\].
+    pub fn new(linear: &Linear, settings: Settings, typical_pressure: f64) -> Self {
         let mut step = TrBdf2::new(linear);
         step.stage.newton.serve(settings.tolerance);
         Self {
             settings,
-            contact_stiffness,
+            typical_pressure,
             matrices: vec![StageMatrices::new(linear); LEVELS + 1],
             last_h: 0.0,
             fresh: true,
@@ -236,8 +235,8 @@ impl Integrator {
         let angle = segment.angle.at(from + h);
         if !matrices.fit(linear, D * h, state.stiffness_factor, angle) {
             self.statistics.matrices += 1;
-            let contact = &self.contact_stiffness;
-            if !matrices.compute(linear, D * h, state.stiffness_factor, angle, contact) {
+            let slopes = face.approach_slopes(self.typical_pressure, D * h);
+            if !matrices.compute(linear, D * h, state.stiffness_factor, angle, slopes) {
                 matrices.a = 0.0;
                 return Err(not_finite("the Delassus matrix"));
             }
