@@ -79,6 +79,14 @@ pub fn scalar_product(a: &[f64], b: &[f64]) -> f64 {
     sums.sum() + rest
 }
 
+/// `to` += `weight` · `row`.
+#[inline(always)]
+pub fn add(to: &mut [f64], weight: f64, row: &[f64]) {
+    for (to, value) in to.iter_mut().zip(row) {
+        *to += weight * value;
+    }
+}
+
 /// Inverts a symmetric positive definite row-major matrix in place (Gauss-Jordan, no pivoting);
 /// `false` if it is not positive definite. The result is made symmetric to the last bit.
 pub fn invert(matrix: &mut [f64], size: usize) -> bool {

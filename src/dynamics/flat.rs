@@ -102,36 +102,37 @@ impl FlatMatrices {
     /// The split of what stands in `turned`.
     fn eliminate(&mut self) -> bool {
         let (stride, n) = (self.normal_slope.len(), self.turned.len().isqrt() / 2);
-        let s = &self.turned;
-        let full = |i: usize, j: usize| s[i * 2 * n + j];
+        let (tangential, normal) = self.turned.split_at(2 * n * n);
+        let [tangential, normal] = [tangential, normal].map(|half| half.chunks_exact(2 * n));
         let [a_inverse, p] = &mut self.room;
-        for i in 0..n {
-            for j in 0..n {
-                a_inverse[i * n + j] = full(n + i, n + j);
-            }
-            a_inverse[i * n + i] += self.normal_slope[i];
+        for (i, (to, from)) in a_inverse.chunks_exact_mut(n).zip(normal.clone()).enumerate() {
+            to.copy_from_slice(&from[n..]);
+            to[i] += self.normal_slope[i];
         }
         if !dense::invert(a_inverse, n) {
             return false;
         }
-        self.by_tangential.fill(0.0);
-        self.by_normal.fill(0.0);
-        for i in 0..n {
-            for j in 0..n {
-                let sum = (0..n).map(|k| full(i, n + k) * a_inverse[k * n + j]).sum();
-                p[i * n + j] = sum;
-                self.by_normal[j * 2 * stride + i] = sum;
-                self.by_normal[j * 2 * stride + stride + i] = a_inverse[i * n + j];
-                self.by_tangential[i * 2 * stride + stride + j] = sum;
+        p.fill(0.0);
+        for (p, s) in p.chunks_exact_mut(n).zip(tangential.clone()) {
+            for (s_tn, row) in s[n..].iter().zip(a_inverse.chunks_exact(n)) {
+                dense::add(p, *s_tn, row);
             }
         }
-        for i in 0..n {
-            for j in 0..=i {
-                let sum: f64 = (0..n).map(|k| p[i * n + k] * full(n + k, j)).sum();
-                self.by_tangential[i * 2 * stride + j] = full(i, j) - sum;
-                self.by_tangential[j * 2 * stride + i] = full(i, j) - sum;
+        self.by_tangential.fill(0.0);
+        self.by_normal.fill(0.0);
+        for (i, (s, p)) in tangential.clone().zip(p.chunks_exact(n)).enumerate() {
+            let (b, p_t) = self.by_tangential[i * 2 * stride..].split_at_mut(stride);
+            b[..n].copy_from_slice(&s[..n]);
+            p_t[..n].copy_from_slice(p);
+            for (p, s_nt) in p.iter().zip(normal.clone()) {
+                dense::add(&mut b[..n], -p, &s_nt[..n]);
             }
-            self.resistance[i] = self.by_tangential[i * 2 * stride + i];
+            self.resistance[i] = b[i];
+            for (j, p) in p.iter().enumerate() {
+                self.by_normal[j * 2 * stride + i] = *p;
+            }
+            let a_inverse = &a_inverse[i * n..(i + 1) * n];
+            self.by_normal[i * 2 * stride + stride..][..n].copy_from_slice(a_inverse);
         }
         true
     }

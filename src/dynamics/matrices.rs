@@ -34,6 +34,12 @@ pub struct StageMatrices {
     pub q: Aligned,
     /// N⁻¹ \[1/kg\], 2 × 2.
     pub n_inverse: [f64; 4],
+    /// S₀ = (a Φ s Φᵀ)⁻¹ \[N s/m\], which a block under a clamped face would have, whatever its angle.
+    clamped: Aligned,
+    /// a s φ of one contact displacement.
+    weighted: Aligned,
+    /// q without padding and S₀ q, of each free direction.
+    release: [[Aligned; 2]; 2],
 }
 
 impl StageMatrices {
@@ -51,6 +57,9 @@ impl StageMatrices {
             base_coupling: Aligned::zeros(2 * modes),
             q: Aligned::zeros(4 * stride),
             n_inverse: [0.0; 4],
+            clamped: Aligned::zeros(4 * linear.nodes * linear.nodes),
+            weighted: Aligned::zeros(modes),
+            release: [(); 2].map(|()| [(); 2].map(|()| Aligned::zeros(2 * linear.nodes))),
         }
     }
 
@@ -73,16 +82,17 @@ impl StageMatrices {
         angle: f64,
         normal_slopes: impl Iterator<Item = f64>,
     ) -> bool {
-        let turned_only = linear.base.is_empty() && self.same_block(a, stiffness_factor);
-        self.angle = frame(linear, angle);
-        if !turned_only && !self.invert(linear, a, stiffness_factor) {
+        if !self.same_block(a, stiffness_factor) && !self.clamp(linear, a, stiffness_factor) {
             return false;
         }
+        self.angle = frame(linear, angle);
+        let n = self.free_face(linear, a, self.angle);
+        self.release(linear, a, n);
         self.flat.split(&self.inverse_delassus, self.angle, normal_slopes)
     }
 
-    /// All but the split; `false` if the block is numerically singular.
-    fn invert(&mut self, linear: &Linear, a: f64, stiffness_factor: f64) -> bool {
+    /// What does not hang on the angle; `false` if the block is numerically singular.
+    fn clamp(&mut self, linear: &Linear, a: f64, stiffness_factor: f64) -> bool {
         (self.a, self.stiffness_factor) = (a, stiffness_factor);
         let kappa = stiffness_factor
             + linear.branches.iter().map(|b| b.share / (1.0 + a / b.time)).sum::<f64>();
@@ -90,13 +100,56 @@ impl StageMatrices {
             self.a_omega2[m] = a * omega2 * kappa;
             self.s[m] = 1.0 / (1.0 + a * linear.damping * omega2 + a * self.a_omega2[m]);
         }
-        self.free_face(linear, a, self.angle);
-        self.delassus(linear, a);
-        dense::invert(&mut self.inverse_delassus, 2 * linear.nodes)
+        let (nodes, modes, size) = (linear.nodes, linear.modes(), 2 * linear.nodes);
+        let row = |c: usize| {
+            let place = c / nodes * linear.stride + c % nodes;
+            &linear.by_contact[place * modes..(place + 1) * modes]
+        };
+        for i in 0..size {
+            for ((to, s), phi) in self.weighted.iter_mut().zip(&self.s).zip(row(i)) {
+                *to = a * s * phi;
+            }
+            for j in 0..=i {
+                let w = dense::scalar_product(&self.weighted, row(j));
+                self.clamped[i * size + j] = w;
+                self.clamped[j * size + i] = w;
+            }
+        }
+        dense::invert(&mut self.clamped, size)
     }
 
-    /// Γ̃, q and N⁻¹.
-    fn free_face(&mut self, linear: &Linear, a: f64, angle: f64) {
+    /// S of S₀ (Woodbury): S₀ − S₀ q (N/a + qᵀ S₀ q)⁻¹ qᵀ S₀.
+    fn release(&mut self, linear: &Linear, a: f64, n: [f64; 4]) {
+        let (nodes, stride, free) = (linear.nodes, linear.stride, linear.base.len());
+        for (j, [q, pushed]) in self.release.iter_mut().enumerate().take(free) {
+            for (axis, part) in q.chunks_exact_mut(nodes).enumerate() {
+                let from = (2 * j + axis) * stride;
+                part.copy_from_slice(&self.q[from..from + nodes]);
+            }
+            for (to, row) in pushed.iter_mut().zip(self.clamped.chunks_exact(2 * nodes)) {
+                *to = dense::scalar_product(row, q);
+            }
+        }
+        let mut inner = n.map(|n| n / a);
+        for (j, [q, _]) in self.release.iter().enumerate().take(free) {
+            for (k, [_, pushed]) in self.release.iter().enumerate().take(free) {
+                inner[2 * j + k] += dense::scalar_product(q, pushed);
+            }
+        }
+        let inner = invert_2x2(inner, free);
+        self.inverse_delassus.copy_from_slice(&self.clamped);
+        for (j, [_, left]) in self.release.iter().enumerate().take(free) {
+            for (k, [_, right]) in self.release.iter().enumerate().take(free) {
+                let rows = self.inverse_delassus.chunks_exact_mut(2 * nodes);
+                for (row, left) in rows.zip(left) {
+                    dense::add(row, -inner[2 * j + k] * left, right);
+                }
+            }
+        }
+    }
+
+    /// Γ̃, q and N⁻¹; returns N.
+    fn free_face(&mut self, linear: &Linear, a: f64, angle: f64) -> [f64; 4] {
         let (modes, stride) = (linear.modes(), linear.stride);
         let mut n = [0.0; 4];
         for (j, dof) in linear.base.iter().enumerate() {
@@ -129,30 +182,19 @@ impl StageMatrices {
                 n[2 * j + k] -= sum;
             }
         }
-        self.n_inverse = match linear.base.len() {
-            0 => [0.0; 4],
-            1 => [1.0 / n[0], 0.0, 0.0, 0.0],
-            _ => {
-                let det = n[0] * n[3] - n[1] * n[2];
-                [n[3] / det, -n[1] / det, -n[2] / det, n[0] / det]
-            }
-        };
+        self.n_inverse = invert_2x2(n, linear.base.len());
+        n
     }
+}
 
-    /// W into `inverse_delassus`, not yet inverted.
-    fn delassus(&mut self, linear: &Linear, a: f64) {
-        let (nodes, stride) = (linear.nodes, linear.stride);
-        let w = &mut self.inverse_delassus;
-        w.fill(0.0);
-        for (m, mode) in linear.by_mode.chunks_exact(2 * stride).enumerate() {
-            add_outer(w, mode, mode, a * self.s[m], nodes, stride);
-        }
-        for j in 0..linear.base.len() {
-            for k in 0..linear.base.len() {
-                let left = &self.q[2 * j * stride..2 * (j + 1) * stride];
-                let right = &self.q[2 * k * stride..2 * (k + 1) * stride];
-                add_outer(w, left, right, a * self.n_inverse[2 * j + k], nodes, stride);
-            }
+/// Inverse of the first `size` rows and columns, the rest zeros.
+fn invert_2x2([a, b, c, d]: [f64; 4], size: usize) -> [f64; 4] {
+    match size {
+        0 => [0.0; 4],
+        1 => [1.0 / a, 0.0, 0.0, 0.0],
+        _ => {
+            let det = a * d - b * c;
+            [d / det, -b / det, -c / det, a / det]
         }
     }
 }
@@ -178,23 +220,40 @@ pub fn in_block_frame(axis: usize, angle: f64) -> [f64; 2] {
     }
 }
 
-/// `matrix` (without padding) += `factor` · `left` `right`ᵀ (padded).
-fn add_outer(
-    matrix: &mut [f64],
-    left: &[f64],
-    right: &[f64],
-    factor: f64,
-    nodes: usize,
-    stride: usize,
-) {
-    for (c, row) in matrix.chunks_exact_mut(2 * nodes).enumerate() {
-        let weight = factor * left[c / nodes * stride + c % nodes];
-        let (x, z) = row.split_at_mut(nodes);
-        for (value, r) in x.iter_mut().zip(right) {
-            *value += weight * r;
-        }
-        for (value, r) in z.iter_mut().zip(&right[stride..]) {
-            *value += weight * r;
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block::Shape;
+    use crate::params::{NormalDrive, Params};
+
+    #[test]
+    fn the_inverse_of_a_freed_and_turned_block_times_its_delassus_matrix_is_one() {
+        // W = a Φ s Φᵀ + a q N⁻¹ qᵀ as in theory eq. 3.6, written out here; condition about 1e4.
+        let mut params = Params::default();
+        params.effect.rig_compliance.enabled = true;
+        params.drive.normal = NormalDrive::Load;
+        let linear = Linear::new(&Shape::of(&params).reduce().unwrap(), &params);
+        assert_eq!(linear.base.len(), 2);
+        let (a, size, modes) = (3e-6, 2 * linear.nodes, linear.modes());
+        let mut m = StageMatrices::new(&linear);
+        for angle in [0.0, 0.15, -0.02] {
+            assert!(m.compute(&linear, a, 0.9, angle, std::iter::repeat(1.0)));
+            let place = |c: usize| c / linear.nodes * linear.stride + c % linear.nodes;
+            let phi = |c: usize, mode: usize| linear.by_contact[place(c) * modes + mode];
+            let q = |c: usize, j: usize| m.q[2 * j * linear.stride + place(c)];
+            let w = |i: usize, j: usize| {
+                let own: f64 = (0..modes).map(|k| phi(i, k) * m.s[k] * phi(j, k)).sum();
+                let of_face: f64 = (0..4).map(|k| q(i, k / 2) * m.n_inverse[k] * q(j, k % 2)).sum();
+                a * (own + of_face)
+            };
+            for i in 0..size {
+                for j in [0, 7, size - 1] {
+                    let one: f64 =
+                        (0..size).map(|k| m.inverse_delassus[i * size + k] * w(k, j)).sum();
+                    let wanted = if i == j { 1.0 } else { 0.0 };
+                    assert!((one - wanted).abs() < 1e-9, "{angle} rad, row {i}, column {j}: {one}");
+                }
+            }
         }
     }
 }
