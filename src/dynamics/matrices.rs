@@ -227,6 +227,19 @@ mod tests {
     use crate::params::{NormalDrive, Params};
 
     #[test]
+    fn a_block_under_a_prescribed_face_keeps_its_matrices_while_it_turns_by_less_than_half_a_hundredth() {
+        // By the definition of the frames: multiples of 0.01 rad, the nearest serves.
+        let mut params = Params::default();
+        params.drive.normal = NormalDrive::Trajectory;
+        let linear = Linear::new(&Shape::of(&params).reduce().unwrap(), &params);
+        let mut m = StageMatrices::new(&linear);
+        assert!(m.compute(&linear, 3e-6, 1.0, 0.02, std::iter::repeat(1.0)));
+        for (angle, holds) in [(0.0249, true), (0.0151, true), (0.0251, false), (-0.02, false)] {
+            assert_eq!(m.fit(&linear, 3e-6, 1.0, angle), holds, "{angle} rad");
+        }
+    }
+
+    #[test]
     fn the_inverse_of_a_freed_and_turned_block_times_its_delassus_matrix_is_one() {
         // W = a Φ s Φᵀ + a q N⁻¹ qᵀ as in theory eq. 3.6, written out here; condition about 1e4.
         let mut params = Params::default();
