@@ -1,5 +1,5 @@
-//! The Newton direction with the full matrix: of a block whose contact is damped, with normal slopes that differ from
-//! node to node, and where the eliminated system takes too many iterations.
+//! The Newton direction with the full matrix, where the eliminated system takes too many iterations: the normal slopes
+//! of strongly damped contacts differ from node to node by more than what one elimination assumes.
 
 use super::kinematics::Kinematics;
 use super::matrices::StageMatrices;
