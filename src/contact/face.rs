@@ -129,7 +129,7 @@ impl Face {
     /// −∂(normal)/∂(normal speed) of each node at rest under the pressure `p` \[Pa\], padded \[N s/m\]; the
     /// compression changes by −`a` \[s\] per normal speed.
     ///
-    /// That of a damper which grows with the pressure is taken for [`PRESSED_EDGE`] times `p`: an iteration that
+    /// That of a damper which grows with the pressure is taken for three times `p`, as at an edge: an iteration that
     /// assumes too steep a slope creeps to the solution, one that assumes too flat a slope leaves it.
     pub fn approach_slopes<'a>(&'a self, p: f64, a: f64) -> impl Iterator<Item = f64> + 'a {
         let compression = Pack::splat(normal::compression(&self.contact, p));

@@ -72,10 +72,9 @@ impl FlatMatrices {
     pub(super) fn turn(&self, motion: &Kinematics) -> Option<Turn> {
         let ([sin, cos], [of_road_sin, of_road_cos]) = (self.frame, motion.sin_cos);
         let turned = sin != 0.0 || of_road_sin != 0.0;
-        turned.then(|| Turn {
-            of_block: self.frame,
-            of_road: [sin * of_road_cos - cos * of_road_sin, cos * of_road_cos + sin * of_road_sin],
-        })
+        let of_road =
+            [sin * of_road_cos - cos * of_road_sin, cos * of_road_cos + sin * of_road_sin];
+        turned.then_some(Turn { of_block: self.frame, of_road })
     }
 
     /// Splits S of the block's frame in that of a road against which the block is turned by `angle` \[rad\];

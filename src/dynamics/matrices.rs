@@ -227,7 +227,7 @@ mod tests {
     use crate::params::{NormalDrive, Params};
 
     #[test]
-    fn a_block_under_a_prescribed_face_keeps_its_matrices_while_it_turns_by_less_than_half_a_hundredth() {
+    fn under_a_prescribed_face_matrices_are_kept_while_a_block_turns_by_a_two_hundredth() {
         // By the definition of the frames: multiples of 0.01 rad, the nearest serves.
         let mut params = Params::default();
         params.drive.normal = NormalDrive::Trajectory;

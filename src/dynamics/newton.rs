@@ -205,7 +205,7 @@ impl Stage {
             return false;
         }
         let frame = m.turn(motion);
-        self.into_frame(n, m, frame.as_ref());
+        self.enter_frame(n, m, frame.as_ref());
         let (newton, force) = (&mut self.newton, &self.force.packs()[..2 * n]);
         let difference = &newton.difference.packs()[..2 * n];
         // B d_t and Pᵀ d_t, P φ and A⁻¹ φ.
@@ -231,13 +231,13 @@ impl Stage {
             &mut newton.direction.packs_mut()[..n],
             &mut newton.of_step.packs_mut()[..2 * n],
         );
-        self.out_of_frame(n, m, frame.as_ref());
+        self.leave_frame(n, m, frame.as_ref());
         true
     }
 
     /// v − v_free, the tractions (as `force`) and φ, in the frame of the split.
     #[inline(always)]
-    fn into_frame(&mut self, n: usize, m: &FlatMatrices, frame: Option<&Turn>) {
+    fn enter_frame(&mut self, n: usize, m: &FlatMatrices, frame: Option<&Turn>) {
         let (newton, t) = (&mut self.newton, &self.traction);
         let (v, v_free) = (&self.v.packs()[..2 * n], &self.v_free.packs()[..2 * n]);
         let (tangential, f_n) = (&t.tangential.packs()[..n], &t.normal.packs()[..n]);
@@ -262,7 +262,7 @@ impl Stage {
     /// The whole direction, and what the linear equations make of the forces at its end, f_t = B d_t + P φ, in the
     /// block's frame.
     #[inline(always)]
-    fn out_of_frame(&mut self, n: usize, m: &FlatMatrices, frame: Option<&Turn>) {
+    fn leave_frame(&mut self, n: usize, m: &FlatMatrices, frame: Option<&Turn>) {
         let newton = &mut self.newton;
         let direction = &mut newton.direction.packs_mut()[..2 * n];
         let (of_tangential, of_normal) =
