@@ -105,9 +105,7 @@ pub fn invert(matrix: &mut [f64], size: usize) -> bool {
         for row in above.chunks_exact_mut(size).chain(below.chunks_exact_mut(size)) {
             let factor = row[k];
             row[k] = 0.0;
-            for (value, r) in row.iter_mut().zip(row_k.iter()) {
-                *value -= factor * r;
-            }
+            add(row, -factor, row_k);
         }
     }
     for i in 0..size {

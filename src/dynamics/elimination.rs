@@ -35,7 +35,7 @@ pub fn solve_rows(rows: &mut [Pack], width: usize, size: usize, x: &mut [Pack]) 
     true
 }
 
-/// Numbers of a row that is at most `width` packs wide and holds a matrix of `size` and a right-hand side.
+/// Packs of a row that holds `size` numbers of a matrix and one of a right-hand side.
 pub fn width(size: usize) -> usize {
     (size + 1).div_ceil(LANES)
 }

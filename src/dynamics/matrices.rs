@@ -72,8 +72,8 @@ impl StageMatrices {
         self.a == a && self.stiffness_factor == stiffness_factor
     }
 
-    /// Computes them (theory eqs. 3.5 to 3.9); the elimination assumes
-    /// `normal_slopes` \[N s/m\] of the nodes' normal forces by their normal speeds. `false` if the block is numerically singular.
+    /// Computes them (theory eqs. 3.5 to 3.9); the elimination assumes `normal_slopes` \[N s/m\] of the nodes' normal
+    /// forces by their normal speeds. `false` if the block is numerically singular.
     pub fn compute(
         &mut self,
         linear: &Linear,
@@ -162,11 +162,8 @@ impl StageMatrices {
             }
             for m in 0..modes {
                 coupling[m] = linear.coupling_along(m, direction);
-                let weight = self.s[m] * coupling[m];
                 let mode = &linear.by_mode[2 * m * stride..2 * (m + 1) * stride];
-                for (q, phi) in q.iter_mut().zip(mode) {
-                    *q -= weight * phi;
-                }
+                dense::add(q, -(self.s[m] * coupling[m]), mode);
             }
             n[3 * j] = linear.block_mass + dof.mass + a * dof.damping + a * a * dof.stiffness;
         }
