@@ -2,15 +2,25 @@
 //! where parameters act without jumps; what a repaired model is used for is the settled vibration.
 
 use super::decide::{Cause, Weighed, JUDGED};
-use super::fit::{approach, evaluate, to_the_end, Effort, Fit};
+use super::fit::{approach, evaluate, to_the_end, Effort, Fit, SETTLED};
 use super::hypotheses::{effort, Fits};
-use super::problem::{Bench, Look};
+use super::problem::{Bench, Choice, Look};
+use crate::effects::{FitForm, Spread};
 
 /// From the optimum of the starts to that of whole runs: soft first, as cycles jump.
 const SCHEDULE: [Effort; 2] = [effort(3, 9, 4.0, None), effort(5, 9, 1.0, None)];
 /// Rounds with Jacobians of their own of the best cause, and of the base model from its nuisance parameters: equal
 /// effort.
 const ROUNDS: usize = 3;
+
+/// Severities from which the likeliest effect starts once more.
+const SEVERITIES: [f64; 5] = [-3.0, -2.0, -1.0, 0.0, 1.5];
+/// The same where it has a sign.
+const SIGNED: [f64; 4] = [-2.0, -0.7, 0.7, 2.0];
+/// Second parameters, most of them what an effect remembers by.
+const SECOND: [f64; 4] = [0.0, -2.0, -1.0, 1.5];
+/// Such a start goes on if it leaves at most this many times what the best fit so far leaves.
+const PROMISING: f64 = 1.5;
 
 /// Refits the base model and the most probable causes on the whole runs `of`; `whole` looks at all of
 /// them. A fit that does not get better there is kept as it was. Levels stay those of the starts.
@@ -34,6 +44,10 @@ pub fn polish(
             _ => continue,
         };
         let mut found = once(whole, &hypothesis.fit, of);
+        if rank == 0 && found.objective > SETTLED * whole.total_weight(of) {
+            found = all_over(whole, found, of);
+            hypothesis.added.clone_from(&found.added);
+        }
         if rank == 0 || matches!(cause, Cause::Pair(_)) {
             found = to_the_end(whole, found, of, ROUNDS);
         }
@@ -46,6 +60,42 @@ pub fn polish(
     }
     fits.base.fit = base;
     fits.base.look = Look::Whole;
+}
+
+/// The effects of `fit`, one after the other, in all their forms from all over their parameters: what lasts longer than
+/// the start of a run shows on whole runs only, where most optima are not the best one.
+fn all_over(whole: &Bench, fit: Fit, of: &[usize]) -> Fit {
+    let count = |choice: Choice| whole.specs[choice.effect].forms[choice.form].params.len();
+    let mut best = fit;
+    for k in 0..best.added.len() {
+        let from = best.added.clone();
+        let after: usize = from[k..].iter().map(|choice| count(*choice)).sum();
+        let (before, rest) = best.x.split_at(best.x.len() - after);
+        let (before, after) = (before.to_vec(), rest[count(from[k])..].to_vec());
+        for (form, spec) in whole.specs[from[k].effect].forms.iter().enumerate() {
+            let mut added = from.clone();
+            added[k].form = form;
+            let points = scattered(spec);
+            let points = points.iter().map(|own| [&before[..], own, &after].concat());
+            let fits = points.map(|x| evaluate(whole, &added, x, of));
+            let Some(begun) = fits.reduce(Fit::or_better) else { continue };
+            if begun.objective > PROMISING * best.objective {
+                continue;
+            }
+            let found = approach(whole, begun.clone(), of, &SCHEDULE[1..]);
+            best = best.or_better(begun.or_better(found));
+        }
+    }
+    best
+}
+
+/// Whitened parameters of an effect from far below to far above the centres of the first two priors.
+fn scattered(form: &FitForm) -> Vec<Vec<f64>> {
+    let signed = matches!(form.params[0].spread, Spread::Absolute(_));
+    let severities: &[f64] = if signed { &SIGNED } else { &SEVERITIES };
+    let second: &[f64] = if form.params.len() > 1 { &SECOND } else { &SECOND[..1] };
+    let pairs = severities.iter().flat_map(|a| second.iter().map(|b| [*a, *b, 0.0, 0.0]));
+    pairs.map(|all| all[..form.params.len()].to_vec()).collect()
 }
 
 /// A fit on whole runs, from where it was.
