@@ -41,12 +41,12 @@ def roofline(folder: Path, peak: float, found: dict, wall: float) -> None:
     intensity, rate = found["flops"] / found["bytes"], found["flops"] / wall
     per_instruction = found["flops"] / found["instructions"]
     figure, axes = plt.subplots(figsize=(7.2, 4.6), layout="constrained")
-    # Two loads of a whole vector per cycle feed one fused multiply-add unit's worth of operands: the
-    # first-level cache gives 64 bytes per load port and cycle where the peak is 32 flops per cycle.
-    bandwidth = peak * 128 / 32
+    # Two fused multiply-adds and two loads of a whole vector per cycle: 4 bytes per flop of the peak.
+    flops_per_cycle = 32 if "avx512f" in Path("/proc/cpuinfo").read_text() else 16
+    bandwidth = 4 * peak
     xs = [2.0 ** (k / 4) for k in range(-28, 17)]
     axes.loglog(xs, [min(peak, bandwidth * x) / 1e9 for x in xs], color="black", label="core, first-level cache")
-    issue = peak / 32 * 4 * per_instruction
+    issue = peak / flops_per_cycle * 4 * per_instruction
     axes.axhline(min(issue, peak) / 1e9, color=COLOURS[1], linestyle="--",
                  label=f"4 instructions a cycle at {per_instruction:.2f} flops each")
     axes.loglog([intensity], [rate / 1e9], "o", color=COLOURS[0], label=f"the step: {100 * rate / peak:.0f} % of the peak")
