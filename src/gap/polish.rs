@@ -104,3 +104,21 @@ fn once(whole: &Bench, fit: &Fit, of: &[usize]) -> Fit {
     let found = approach(whole, start.clone(), of, &SCHEDULE);
     start.or_better(found)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effects::fit_specs;
+
+    #[test]
+    fn every_form_starts_from_places_with_a_number_for_each_of_its_parameters() {
+        // Five severities (four where it has a sign) by four second parameters, or by one where there is no second.
+        for form in fit_specs().iter().flat_map(|spec| spec.forms) {
+            let points = scattered(form);
+            let signed = matches!(form.params[0].spread, Spread::Absolute(_));
+            let expected = (5 - usize::from(signed)) * if form.params.len() > 1 { 4 } else { 1 };
+            assert_eq!(points.len(), expected, "{}", form.name);
+            assert!(points.iter().all(|x| x.len() == form.params.len()), "{}", form.name);
+        }
+    }
+}
