@@ -42,6 +42,13 @@ pub enum Spread {
     Absolute(f64),
 }
 
+impl Spread {
+    /// Is it that of a parameter with a sign?
+    pub const fn is_signed(&self) -> bool {
+        matches!(self, Self::Absolute(_))
+    }
+}
+
 /// One parameter of a fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitParam {

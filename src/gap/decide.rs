@@ -100,7 +100,7 @@ pub fn evidence(level: f64) -> f64 {
 /// Share of the level that an effect answers for: a road is not the sine of its fit.
 fn allowed(single: &Hypothesis) -> f64 {
     let textured = |c: &super::problem::Choice| fit_specs()[c.effect].effect == "road_texture";
-    if single.added.iter().any(textured) {
+    if single.fit.added.iter().any(textured) {
         TEXTURE_ALLOWANCE
     } else {
         1.0
@@ -111,7 +111,7 @@ fn allowed(single: &Hypothesis) -> f64 {
 pub fn weigh(fits: &Fits) -> Vec<Weighed> {
     let base = fits.base.level;
     let against = |h: &Hypothesis| {
-        let effects: Vec<usize> = h.added.iter().map(|c| c.effect).collect();
+        let effects: Vec<usize> = h.fit.added.iter().map(|c| c.effect).collect();
         CONTRADICTION * symmetry::contradictions(&fits.findings, &effects) as f64
     };
     let inadequate = INADEQUATE * (base / GOOD).ln().max(0.0);
@@ -141,8 +141,9 @@ pub(super) fn normalised(mut out: Vec<Weighed>) -> Vec<Weighed> {
 
 /// Names of the effects of a cause.
 pub fn names(bench: &Bench, fits: &Fits, cause: &Cause) -> Vec<String> {
-    let of =
-        |h: &Hypothesis| h.added.iter().map(|c| bench.specs[c.effect].effect.to_string()).collect();
+    let of = |h: &Hypothesis| {
+        h.fit.added.iter().map(|c| bench.specs[c.effect].effect.to_string()).collect()
+    };
     match cause {
         Cause::None => Vec::new(),
         Cause::Unknown => vec!["unknown".to_string()],
@@ -218,7 +219,7 @@ pub fn modules(bench: &Bench, fits: &Fits) -> Vec<(String, f64)> {
         .collect();
     let base = (fits.base.level + BLUR).ln();
     for single in &fits.singles {
-        let module = bench.specs[single.added[0].effect].module.name();
+        let module = bench.specs[single.fit.added[0].effect].module.name();
         let gain = (base - (single.level + BLUR).ln()).max(0.0);
         if let Some(slot) = out.iter_mut().find(|m| m.0 == module) {
             slot.1 = slot.1.max(gain);
@@ -245,7 +246,7 @@ pub(super) mod tests {
             objective: level,
             jacobian: None,
         };
-        Hypothesis { added: Vec::new(), fit, level, look: Look::Fit }
+        Hypothesis { fit, level, look: Look::Fit }
     }
 
     pub(in crate::gap) fn fits(base: f64, singles: &[f64]) -> Fits {

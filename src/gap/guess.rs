@@ -1,7 +1,7 @@
 //! Where fits begin: from the datasheet, for the base model and for every effect alike.
 
 use super::campaign::RunKind;
-use super::fit::{approach, evaluate, Effort, Fit, SETTLED};
+use super::fit::{approach, evaluate, evaluate_all, Effort, Fit, SETTLED};
 use super::hypotheses::{effort, Method};
 use super::noise::Noise;
 use super::problem::{Bench, Choice};
@@ -98,7 +98,7 @@ fn guess_effect(
                 few.map(|x| struck(bench, &added, x.clone(), of)).collect();
             points.extend(ringing);
         }
-        points.into_iter().map(move |x| evaluate(bench, &added, x, of))
+        evaluate_all(bench, &added, points, of)
     };
     let towards = |fit| approach(bench, fit, of, &FIRST[..1]);
     let arrive = |fit| approach(bench, fit, of, &FIRST[1..]);
@@ -175,7 +175,7 @@ const FIRST: [Effort; 2] = [effort(4, 2, 4.0, None), effort(3, 3, 1.0, None)];
 /// Starting points of an effect, the last of `added`, at the nuisance parameters `x`.
 pub(super) fn starts(bench: &Bench, added: &[Choice], x: &[f64]) -> Vec<Vec<f64>> {
     let coordinates = bench.coordinates(added);
-    let signed = matches!(coordinates[x.len()].spread, crate::effects::Spread::Absolute(_));
+    let signed = coordinates[x.len()].spread.is_signed();
     let severities: &[f64] = if signed { &SIGNED } else { &STARTS };
     let at = |severity: &f64| {
         let mut point = x.to_vec();

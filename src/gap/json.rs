@@ -138,7 +138,7 @@ pub fn decision(d: &Diagnosis) -> Json {
 /// Parameters of the model of a cause.
 pub fn params_of(d: &Diagnosis, cause: &Cause) -> Params {
     let hypothesis = decide::fit_of(&d.fits, cause);
-    d.bench.params(&hypothesis.added, &hypothesis.fit.x)
+    d.bench.params(&hypothesis.fit.added, &hypothesis.fit.x)
 }
 
 fn hypotheses_json(d: &Diagnosis) -> Vec<Json> {
@@ -169,7 +169,7 @@ pub fn parameters(d: &Diagnosis, cause: &Cause) -> Vec<Json> {
     let bench = if hypothesis.look == Look::Whole { &d.whole } else { &d.bench };
     let deviations = hypotheses::deviations(bench, hypothesis);
     d.bench
-        .coordinates(&hypothesis.added)
+        .coordinates(&hypothesis.fit.added)
         .iter()
         .zip(hypothesis.fit.x.iter().zip(deviations))
         .map(|(c, (x, sd))| {

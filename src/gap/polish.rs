@@ -2,10 +2,10 @@
 //! where parameters act without jumps; what a repaired model is used for is the settled vibration.
 
 use super::decide::{Cause, Weighed, JUDGED};
-use super::fit::{approach, evaluate, to_the_end, Effort, Fit, SETTLED};
+use super::fit::{approach, evaluate, evaluate_all, to_the_end, Effort, Fit};
 use super::hypotheses::{effort, Fits};
-use super::problem::{Bench, Choice, Look};
-use crate::effects::{FitForm, Spread};
+use super::problem::{Bench, Look};
+use crate::effects::FitForm;
 
 /// From the optimum of the starts to that of whole runs: soft first, as cycles jump.
 const SCHEDULE: [Effort; 2] = [effort(3, 9, 4.0, None), effort(5, 9, 1.0, None)];
@@ -44,9 +44,8 @@ pub fn polish(
             _ => continue,
         };
         let mut found = once(whole, &hypothesis.fit, of);
-        if rank == 0 && found.objective > SETTLED * whole.total_weight(of) {
+        if rank == 0 && !found.is_settled(whole, of) {
             found = all_over(whole, found, of);
-            hypothesis.added.clone_from(&found.added);
         }
         if rank == 0 || matches!(cause, Cause::Pair(_)) {
             found = to_the_end(whole, found, of, ROUNDS);
@@ -65,23 +64,18 @@ pub fn polish(
 /// The effects of `fit`, one after the other, in all their forms from all over their parameters: what lasts longer than
 /// the start of a run shows on whole runs only, where most optima are not the best one.
 fn all_over(whole: &Bench, fit: Fit, of: &[usize]) -> Fit {
-    let count = |choice: Choice| whole.specs[choice.effect].forms[choice.form].params.len();
     let mut best = fit;
     for k in 0..best.added.len() {
-        let from = best.added.clone();
-        let after: usize = from[k..].iter().map(|choice| count(*choice)).sum();
-        let (before, rest) = best.x.split_at(best.x.len() - after);
-        let (before, after) = (before.to_vec(), rest[count(from[k])..].to_vec());
+        let (from, x) = (best.added.clone(), best.x.clone());
+        let [begin, end] = [k, k + 1].map(|k| whole.coordinates(&from[..k]).len());
+        let with = |own: Vec<f64>| [&x[..begin], &own, &x[end..]].concat();
         for (form, spec) in whole.specs[from[k].effect].forms.iter().enumerate() {
             let mut added = from.clone();
             added[k].form = form;
-            let points = scattered(spec);
-            let points = points.iter().map(|own| [&before[..], own, &after].concat());
-            let fits = points.map(|x| evaluate(whole, &added, x, of));
-            let Some(begun) = fits.reduce(Fit::or_better) else { continue };
-            if begun.objective > PROMISING * best.objective {
-                continue;
-            }
+            let points = scattered(spec).into_iter().map(with).collect();
+            let begun = evaluate_all(whole, &added, points, of).into_iter().reduce(Fit::or_better);
+            let promising = begun.filter(|fit| fit.objective <= PROMISING * best.objective);
+            let Some(begun) = promising else { continue };
             let found = approach(whole, begun.clone(), of, &SCHEDULE[1..]);
             best = best.or_better(begun.or_better(found));
         }
@@ -91,8 +85,7 @@ fn all_over(whole: &Bench, fit: Fit, of: &[usize]) -> Fit {
 
 /// Whitened parameters of an effect from far below to far above the centres of the first two priors.
 fn scattered(form: &FitForm) -> Vec<Vec<f64>> {
-    let signed = matches!(form.params[0].spread, Spread::Absolute(_));
-    let severities: &[f64] = if signed { &SIGNED } else { &SEVERITIES };
+    let severities: &[f64] = if form.params[0].spread.is_signed() { &SIGNED } else { &SEVERITIES };
     let second: &[f64] = if form.params.len() > 1 { &SECOND } else { &SECOND[..1] };
     let pairs = severities.iter().flat_map(|a| second.iter().map(|b| [*a, *b, 0.0, 0.0]));
     pairs.map(|all| all[..form.params.len()].to_vec()).collect()
@@ -115,7 +108,7 @@ mod tests {
         // Five severities (four where it has a sign) by four second parameters, or by one where there is no second.
         for form in fit_specs().iter().flat_map(|spec| spec.forms) {
             let points = scattered(form);
-            let signed = matches!(form.params[0].spread, Spread::Absolute(_));
+            let signed = form.params[0].spread.is_signed();
             let expected = (5 - usize::from(signed)) * if form.params.len() > 1 { 4 } else { 1 };
             assert_eq!(points.len(), expected, "{}", form.name);
             assert!(points.iter().all(|x| x.len() == form.params.len()), "{}", form.name);

@@ -40,9 +40,8 @@ fn left(closed: f64) -> f64 {
 /// Nats of each pair from what it closes beyond its first effect; 0 for other causes.
 fn gains(fits: &Fits, weighed: &[Weighed], closed: &[Option<f64>]) -> Vec<f64> {
     let of_first = |pair: usize| {
-        let first = fits.pairs[pair].added[0].effect;
-        let is =
-            |c: &Cause| matches!(c, Cause::Single(k) if fits.singles[*k].added[0].effect == first);
+        let first = fits.pairs[pair].fit.added[0].effect;
+        let is = |c: &Cause| matches!(c, Cause::Single(k) if fits.singles[*k].fit.added[0].effect == first);
         closed[weighed.iter().position(|w| is(&w.cause))?]
     };
     let gain = |(w, both): (&Weighed, &Option<f64>)| match w.cause {
@@ -102,10 +101,10 @@ mod tests {
     fn a_pair_gains_by_what_it_closes_beyond_its_first_effect_on_unseen_runs() {
         // Left 0.25 instead of 0.75: 4 ln 3 nats, by the common factor of all log odds.
         let mut fits = fits(8.0, &[1.4, 6.0]);
-        fits.singles[0].added = vec![choice(0)];
-        fits.singles[1].added = vec![choice(1)];
+        fits.singles[0].fit.added = vec![choice(0)];
+        fits.singles[1].fit.added = vec![choice(1)];
         let mut pair = at(0.9);
-        pair.added = vec![choice(0), choice(1)];
+        pair.fit.added = vec![choice(0), choice(1)];
         fits.pairs = vec![pair];
         let weighed = weigh(&fits);
         let odds = |of: &[Weighed]| odds_of(of, &Cause::Pair(0), &Cause::Single(0));

@@ -27,7 +27,7 @@ pub(super) fn next(bench: &Bench, fits: &Fits, weighed: &[Weighed]) -> Vec<Exper
     let between = [first, second].map(|cause| decide::label(bench, fits, cause));
     let params = [first, second].map(|cause| {
         let hypothesis = decide::fit_of(fits, cause);
-        bench.params(&hypothesis.added, &hypothesis.fit.x)
+        bench.params(&hypothesis.fit.added, &hypothesis.fit.x)
     });
     let mut out: Vec<Experiment> = candidates()
         .into_par_iter()

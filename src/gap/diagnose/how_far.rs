@@ -34,7 +34,7 @@ impl Gap {
 
 /// Residuals of a hypothesis on the runs `of`.
 pub(super) fn at(bench: &Bench, hypothesis: &Hypothesis, of: &[usize]) -> Residuals {
-    evaluate(bench, &hypothesis.added, hypothesis.fit.x.clone(), of).residuals
+    evaluate(bench, &hypothesis.fit.added, hypothesis.fit.x.clone(), of).residuals
 }
 
 /// The gap on the runs `judged`, and the closed fraction of every cause in `weighed` that is judged.

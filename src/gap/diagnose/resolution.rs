@@ -24,7 +24,7 @@ pub(super) fn indistinguishable(bench: &Bench, fits: &Fits) -> Vec<[String; 2]> 
     let top = nats.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let good: Vec<usize> =
         (0..nats.len()).filter(|k| nats[*k] > base + 3.0 && nats[*k] > top - 3.0).collect();
-    let name = |k: usize| bench.specs[fits.singles[k].added[0].effect].effect.to_string();
+    let name = |k: usize| bench.specs[fits.singles[k].fit.added[0].effect].effect.to_string();
     good.iter()
         .enumerate()
         .flat_map(|(i, a)| good[i + 1..].iter().map(move |b| (*a, *b)))

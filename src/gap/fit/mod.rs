@@ -34,6 +34,11 @@ pub struct Fit {
 }
 
 impl Fit {
+    /// Is it a good optimum on the runs `of`?
+    pub fn is_settled(&self, bench: &Bench, of: &[usize]) -> bool {
+        self.objective < SETTLED * bench.total_weight(of)
+    }
+
     /// The other fit if it is better.
     #[must_use]
     pub fn or_better(self, other: Self) -> Self {
@@ -79,8 +84,7 @@ pub fn to_the_end(bench: &Bench, mut fit: Fit, of: &[usize], rounds: usize) -> F
         let before = fit.objective;
         let found = approach(bench, Fit { jacobian: None, ..fit.clone() }, of, &FINE);
         fit = fit.or_better(found);
-        let good = fit.objective < SETTLED * bench.total_weight(of);
-        if good || fit.objective > ENOUGH * before {
+        if fit.is_settled(bench, of) || fit.objective > ENOUGH * before {
             break;
         }
     }
@@ -110,15 +114,13 @@ pub fn explore(bench: &Bench, fit: Fit, of: &[usize], draws: usize, view: View) 
             fit.x.iter().zip(shift).map(|(x, s)| (x + s).clamp(-2.5, 2.5)).collect()
         })
         .collect();
-    let found = bench.residuals(&fit.added, &points, of);
+    let found = evaluate_all(bench, &fit.added, points, of);
     let mut best = fit;
     let mut lowest = objective(bench, &best.x, &best.residuals, view);
-    for (x, residuals) in points.into_iter().zip(found) {
-        let here = objective(bench, &x, &residuals, view);
+    for fit in found {
+        let here = objective(bench, &fit.x, &fit.residuals, view);
         if here < lowest {
-            lowest = here;
-            let objective = objective(bench, &x, &residuals, View::PLAIN);
-            best = Fit { added: best.added, x, residuals, objective, jacobian: None };
+            (lowest, best) = (here, fit);
         }
     }
     best
@@ -129,9 +131,22 @@ const REACH: [f64; 4] = [3.0, 8.0, 20.0, 50.0];
 
 /// Evaluates a point.
 pub fn evaluate(bench: &Bench, added: &[Choice], x: Vec<f64>, of: &[usize]) -> Fit {
-    let residuals = bench.residuals(added, std::slice::from_ref(&x), of).swap_remove(0);
-    let objective = objective(bench, &x, &residuals, View::PLAIN);
-    Fit { added: added.to_vec(), x, residuals, objective, jacobian: None }
+    evaluate_all(bench, added, vec![x], of).swap_remove(0)
+}
+
+/// Evaluates points side by side.
+pub fn evaluate_all(
+    bench: &Bench,
+    added: &[Choice],
+    points: Vec<Vec<f64>>,
+    of: &[usize],
+) -> Vec<Fit> {
+    let all = bench.residuals(added, &points, of);
+    let fit = |(x, residuals): (Vec<f64>, Residuals)| {
+        let objective = objective(bench, &x, &residuals, View::PLAIN);
+        Fit { added: added.to_vec(), x, residuals, objective, jacobian: None }
+    };
+    points.into_iter().zip(all).map(fit).collect()
 }
 
 /// Improves `fit` on the runs `of`.

@@ -1,7 +1,7 @@
 //! The base model, recalibrated: nothing is credited to an effect that it could have explained.
 
 use super::{effort, full_jacobian, Hypothesis};
-use crate::gap::fit::{approach, evaluate, explore, improve, Effort, Fit, View, SETTLED};
+use crate::gap::fit::{approach, evaluate, explore, improve, Effort, Fit, View};
 use crate::gap::problem::Bench;
 
 /// Once more from another place.
@@ -14,7 +14,7 @@ const AGAIN: Effort = effort(2, 9, 1.0, None);
 /// The base model's optimum from `start`; where it is not good, `search` looks for one further away.
 pub(super) fn recalibrate(bench: &Bench, start: Fit, of: &[usize], search: bool) -> Fit {
     let mut best = approach(bench, start, of, &HOME);
-    if search && best.objective >= SETTLED * bench.total_weight(of) {
+    if search && !best.is_settled(bench, of) {
         let view = View { heat: 3.0, onset_parts: None };
         let found = explore(bench, best.clone(), of, DRAWS, view);
         best = best.or_better(approach(bench, found, of, &HOME));

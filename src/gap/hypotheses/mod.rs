@@ -6,7 +6,7 @@ mod single;
 
 use super::fit::{self, columns, evaluate, Effort, Fit, View};
 use super::guess::Guess;
-use super::problem::{Bench, Choice, Look};
+use super::problem::{Bench, Look};
 use super::symmetry::{self, Finding};
 use crate::error::Fault;
 use nalgebra::DMatrix;
@@ -15,9 +15,7 @@ use pairs::pairs_and_alone;
 /// A fitted hypothesis.
 #[derive(Clone, Debug)]
 pub struct Hypothesis {
-    /// Effects; empty for the base model.
-    pub added: Vec<Choice>,
-    /// The fit on the runs that may be seen.
+    /// The fit on the runs that may be seen, without effects for the base model.
     pub fit: Fit,
     /// Objective over the sum of weights on the start of the runs: about 1 where nothing is left.
     pub level: f64,
@@ -133,7 +131,7 @@ fn full_jacobian(bench: &Bench, fit: &Fit, of: &[usize]) -> DMatrix<f64> {
 /// The fit as a hypothesis with its level on the runs `of`.
 fn level(bench: &Bench, fit: Fit, of: &[usize]) -> Hypothesis {
     let level = fit.objective / bench.total_weight(of);
-    Hypothesis { added: fit.added.clone(), fit, level, look: bench.look() }
+    Hypothesis { fit, level, look: bench.look() }
 }
 
 /// Indices from the best to the worst.

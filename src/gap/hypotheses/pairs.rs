@@ -38,7 +38,7 @@ pub(super) fn pairs_and_alone(
         found.sort_by(|a, b| a.level.total_cmp(&b.level));
         let mut seen = Vec::new();
         found.retain(|pair| {
-            let second = pair.added[1].effect;
+            let second = pair.fit.added[1].effect;
             let new = !seen.contains(&second);
             seen.push(second);
             new
@@ -54,10 +54,10 @@ fn best_level(hypotheses: &[Hypothesis]) -> f64 {
 /// The first effect of a pair from where the pair has left the block: a pair must not take credit
 /// for an optimum that its first effect alone has missed.
 fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis], of: &[usize]) {
-    let added = vec![pair.added[0]];
+    let added = vec![pair.fit.added[0]];
     let x = pair.fit.x[..bench.coordinates(&added).len()].to_vec();
     let fit = approach(bench, evaluate(bench, &added, x, of), of, &FINE);
-    for single in singles.iter_mut().filter(|s| s.added[0].effect == added[0].effect) {
+    for single in singles.iter_mut().filter(|s| s.fit.added[0].effect == added[0].effect) {
         single.take_better(bench, fit.clone(), of);
         deepen(bench, single, of);
     }
@@ -98,7 +98,7 @@ fn pairs(
     let mut out = Vec::new();
     for effect in others.filter(|e| against(*e) == least) {
         progress(0.82 + 0.01 * effect as f64, "fitting pairs");
-        let choice = Choice { effect, form: singles[effect].added[0].form };
+        let choice = Choice { effect, form: singles[effect].fit.added[0].form };
         let (found, _) = start_effect(bench, &from, choice, of, method);
         out.push(level(bench, found, of));
     }

@@ -1,8 +1,7 @@
 //! Single effects: every one beside the recalibrated base model after the same effort, then the best of them further.
 
 use super::{effort, full_jacobian, level, ranked, Hypothesis, Method};
-use crate::effects::Spread;
-use crate::gap::fit::{approach, columns, evaluate, Effort, Fit, FINE};
+use crate::gap::fit::{approach, columns, evaluate, evaluate_all, Effort, Fit, FINE};
 use crate::gap::guess::{starts, Guess};
 use crate::gap::problem::{Bench, Choice, Coordinate};
 
@@ -66,7 +65,7 @@ pub(super) fn other_forms(
     method: Method,
 ) {
     for at in best_possible(singles, possible).into_iter().take(FAMILIES) {
-        let effect = singles[at].added[0].effect;
+        let effect = singles[at].fit.added[0].effect;
         for form in 1..bench.specs[effect].forms.len() {
             let (found, _) = start_effect(bench, base, Choice { effect, form }, of, method);
             singles[at].take_better(bench, found, of);
@@ -118,19 +117,13 @@ pub(super) fn start_effect(
     if !base.added.is_empty() {
         points.push(faint(&coordinates, &base.x, FAINT));
     }
-    let mut tried = (0.0, 0.0);
-    let mut best: Option<Fit> = None;
-    for (k, x) in points.into_iter().enumerate() {
-        let fit = evaluate(bench, &added, x, of);
-        if k == 0 {
-            tried = (coordinates[at].value(fit.x[at]).abs(), caused(bench, base, &fit));
-        }
-        best = Some(match best {
-            Some(best) => best.or_better(fit),
-            None => fit,
-        });
-    }
-    let Some(mut fit) = best else { return (base.clone(), tried) };
+    let fits = evaluate_all(bench, &added, points, of);
+    let tried = fits.first().map_or((0.0, 0.0), |fit| {
+        (coordinates[at].value(fit.x[at]).abs(), caused(bench, base, fit))
+    });
+    let Some(mut fit) = fits.into_iter().reduce(Fit::or_better) else {
+        return (base.clone(), tried);
+    };
     let own: Vec<usize> = if method.recalibrate { (at..fit.x.len()).collect() } else { vec![at] };
     let columns = columns(bench, &fit, &own, of);
     fit.jacobian = base.jacobian.as_ref().map(|j| {
@@ -150,7 +143,7 @@ pub(super) fn start_effect(
 fn faint(coordinates: &[Coordinate], x: &[f64], severity: f64) -> Vec<f64> {
     let mut point = x.to_vec();
     point.resize(coordinates.len(), 0.0);
-    if let Spread::Log(_) = coordinates[x.len()].spread {
+    if !coordinates[x.len()].spread.is_signed() {
         point[x.len()] = severity;
     }
     point
