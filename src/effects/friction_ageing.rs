@@ -154,6 +154,8 @@ pub const FIT: FitSpec = FitSpec {
             params: &[
                 log("effect.friction_ageing.strength", 0.2, 0.8),
                 log("effect.friction_ageing.distance", 30e-6, 0.9),
+                log("effect.friction_ageing.time", 1e-4, 1.0),
+                log("effect.friction_ageing.initial_age", 0.015, 1.5),
             ],
         },
         FitForm {
@@ -162,6 +164,7 @@ pub const FIT: FitSpec = FitSpec {
                 log("effect.friction_ageing.strength", 0.7, 0.8),
                 log("effect.friction_ageing.distance", 30e-6, 0.9),
                 log("effect.friction_ageing.time", 3e-3, 1.0),
+                log("effect.friction_ageing.initial_age", 0.015, 1.5),
             ],
         },
         FitForm {
@@ -170,7 +173,7 @@ pub const FIT: FitSpec = FitSpec {
                 log("effect.friction_ageing.strength", 0.06, 0.8),
                 log("effect.friction_ageing.distance", 30e-6, 0.9),
                 log("effect.friction_ageing.time", 1e-4, 1.0),
-                log("effect.friction_ageing.initial_age", 0.1, 1.5),
+                log("effect.friction_ageing.initial_age", 0.015, 1.5),
             ],
         },
     ],
