@@ -3,9 +3,11 @@
 
 mod jacobian;
 mod objective;
+mod search;
 
 pub use jacobian::{columns, deviations};
 pub use objective::View;
+pub use search::search;
 
 use super::noise::Noise;
 use super::problem::{Bench, Choice, Residuals};

@@ -1,7 +1,8 @@
 //! The base model, recalibrated: nothing is credited to an effect that it could have explained.
 
+use super::contenders::is_contended;
 use super::{effort, full_jacobian, Hypothesis};
-use crate::gap::fit::{approach, evaluate, explore, improve, Effort, Fit, View};
+use crate::gap::fit::{approach, evaluate, explore, improve, search, Effort, Fit, View};
 use crate::gap::problem::Bench;
 
 /// Once more from another place.
@@ -22,7 +23,8 @@ pub(super) fn recalibrate(bench: &Bench, start: Fit, of: &[usize], search: bool)
     best
 }
 
-/// The base model from the nuisance parameters of the best effects.
+/// The base model from the nuisance parameters of the best effects, and by a search where one of them had to be searched
+/// for and is close.
 pub(super) fn again(
     bench: &Bench,
     mut base: Fit,
@@ -35,6 +37,9 @@ pub(super) fn again(
         let x = singles[*at].fit.x[..size].to_vec();
         let trial = improve(bench, evaluate(bench, &[], x, of), of, AGAIN);
         base = base.or_better(trial);
+    }
+    if order.first().is_some_and(|at| is_contended(bench, &singles[*at].fit, &base, of)) {
+        base = search(bench, base, of);
     }
     if base.jacobian.is_none() {
         base.jacobian = Some(full_jacobian(bench, &base, of));

@@ -1,6 +1,7 @@
 //! Which effects are asked, and how well each explains the data after the same effort.
 
 mod base;
+mod contenders;
 mod pairs;
 mod single;
 
@@ -108,9 +109,12 @@ pub fn fit_all(
         progress(0.55, "other forms of the best effects");
         single::other_forms(bench, &base, &mut singles, &possible, of, method);
     }
-    let order = single::best_possible(&singles, &possible);
+    let mut order = single::best_possible(&singles, &possible);
     if method.recalibrate {
         single::refine(bench, &mut singles, &order, of, progress);
+        order = single::best_possible(&singles, &possible);
+        contenders::effects(bench, &mut singles, &order, of, progress);
+        order = single::best_possible(&singles, &possible);
     }
     if method.equal_effort && method.recalibrate {
         progress(0.75, "the base model once more, from what the effects found");

@@ -2,7 +2,7 @@
 
 use super::single::start_effect;
 use super::{full_jacobian, level, ranked, Hypothesis, Method};
-use crate::gap::fit::{approach, evaluate, to_the_end, FINE};
+use crate::gap::fit::{approach, evaluate, search, to_the_end, FINE};
 use crate::gap::problem::{Bench, Choice};
 use crate::gap::symmetry::{self, Finding};
 
@@ -107,5 +107,15 @@ fn pairs(
     }
     out.sort_by(|a, b| a.level.total_cmp(&b.level));
     out.truncate(PAIRED);
+    // Equal effort once more: the first effect alone was searched for.
+    let single = &singles[first].fit;
+    for pair in out.iter_mut().take(1).filter(|p| p.fit.objective < MUCH_BETTER * single.objective)
+    {
+        if !pair.fit.is_settled(bench, of) {
+            progress(0.93, "searching around the best pair");
+            let fit = search(bench, pair.fit.clone(), of);
+            pair.take_better(bench, fit, of);
+        }
+    }
     out
 }
