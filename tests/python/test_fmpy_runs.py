@@ -65,7 +65,9 @@ def test_reset_equals_a_new_instance_bit_for_bit(slave):
     np.testing.assert_array_equal(used.initialize().slide(points), expected)
 
 
-def test_instances_in_threads_give_the_same_bits(unpacked, description):
+def test_instances_in_threads_give_the_same_bits(unpacked, description, monkeypatch):
+    # fmpy changes to the library's folder and back while it loads; threads that do so at once may stay there.
+    monkeypatch.chdir(os.getcwd())
     points = grid(200, 1e-5)
     results = {}
 

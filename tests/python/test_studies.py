@@ -37,7 +37,7 @@ points = 24
 
 
 def tread():
-    return Path(os.environ.get("TREAD", "target/debug/tread")).resolve()
+    return ROOT / os.environ.get("TREAD", "target/debug/tread")
 
 
 @pytest.fixture(scope="module")
