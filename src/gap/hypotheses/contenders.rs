@@ -1,15 +1,13 @@
 //! What leads is searched for once more, where a descent has not settled it.
 
 use super::Hypothesis;
-use crate::gap::fit::{search, to_the_end, Fit};
+use crate::gap::fit::Fit;
 use crate::gap::problem::Bench;
 
 /// Effects that are searched for, the best one among them.
 const SINGLES: usize = 2;
 /// What leaves at most so many times what the best effect leaves is searched for as hard as that.
 const CLOSE: f64 = 1.5;
-/// Rounds of the descent before a search.
-const ROUNDS: usize = 6;
 
 /// The best effect to the end of its descent; where that does not settle it, it and a second one that is close to it by
 /// a search around their optima.
@@ -21,14 +19,12 @@ pub(super) fn effects(
     progress: &(dyn Fn(f64, &str) + Sync),
 ) {
     let Some(first) = order.first() else { return };
-    let fit = to_the_end(bench, singles[*first].fit.clone(), of, ROUNDS);
-    singles[*first].take_better(bench, fit, of);
+    singles[*first].deepen(bench, of);
     let best = singles[*first].fit.clone();
     for at in order.iter().take(SINGLES) {
         if is_contended(bench, &best, &singles[*at].fit, of) {
             progress(0.75, "searching around the best effects");
-            let fit = search(bench, singles[*at].fit.clone(), of);
-            singles[*at].take_better(bench, fit, of);
+            singles[*at].search(bench, of);
         }
     }
 }

@@ -31,7 +31,22 @@ impl Hypothesis {
             *self = level(bench, fit, of);
         }
     }
+
+    /// Fits on, to where it no longer gets better: effects that share a valley leave it late.
+    fn deepen(&mut self, bench: &Bench, of: &[usize]) {
+        let fit = fit::to_the_end(bench, self.fit.clone(), of, ROUNDS);
+        self.take_better(bench, fit, of);
+    }
+
+    /// Goes to the best place that a search around it finds.
+    fn search(&mut self, bench: &Bench, of: &[usize]) {
+        let fit = fit::search(bench, self.fit.clone(), of);
+        self.take_better(bench, fit, of);
+    }
 }
+
+/// Rounds of a fit that goes on, at most.
+const ROUNDS: usize = 6;
 
 /// All fits of a campaign.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use super::single::start_effect;
 use super::{full_jacobian, level, ranked, Hypothesis, Method};
-use crate::gap::fit::{approach, evaluate, search, to_the_end, FINE};
+use crate::gap::fit::{approach, evaluate, FINE};
 use crate::gap::problem::{Bench, Choice};
 use crate::gap::symmetry::{self, Finding};
 
@@ -12,8 +12,6 @@ const LITTLE: f64 = 1.2;
 const PAIRED: usize = 3;
 /// Pairs that are fitted further.
 const DEEPENED: usize = 3;
-/// Rounds of a fit that goes on, at most.
-const ROUNDS: usize = 6;
 /// Share of its level below which an effect is another start for pairs.
 const MUCH_BETTER: f64 = 0.9;
 
@@ -59,14 +57,8 @@ fn alone(bench: &Bench, pair: &Hypothesis, singles: &mut [Hypothesis], of: &[usi
     let fit = approach(bench, evaluate(bench, &added, x, of), of, &FINE);
     for single in singles.iter_mut().filter(|s| s.fit.added[0].effect == added[0].effect) {
         single.take_better(bench, fit.clone(), of);
-        deepen(bench, single, of);
+        single.deepen(bench, of);
     }
-}
-
-/// Fits on, to where it no longer gets better: two effects that share a valley leave it late.
-fn deepen(bench: &Bench, hypothesis: &mut Hypothesis, of: &[usize]) {
-    let fit = to_the_end(bench, hypothesis.fit.clone(), of, ROUNDS);
-    hypothesis.take_better(bench, fit, of);
 }
 
 /// The best effect with every other that the symmetries allow beside it, then once more the best
@@ -87,7 +79,7 @@ fn pairs(
         return Vec::new();
     }
     // Equal effort: what a pair is given more rounds for, its first effect alone is given as well.
-    deepen(bench, &mut singles[first], of);
+    singles[first].deepen(bench, of);
     let mut from = singles[first].fit.clone();
     if from.jacobian.is_none() {
         from.jacobian = Some(full_jacobian(bench, &from, of));
@@ -103,19 +95,18 @@ fn pairs(
         out.push(level(bench, found, of));
     }
     for at in ranked(&out).into_iter().take(DEEPENED) {
-        deepen(bench, &mut out[at], of);
+        out[at].deepen(bench, of);
     }
     out.sort_by(|a, b| a.level.total_cmp(&b.level));
     out.truncate(PAIRED);
     // Equal effort once more: the first effect alone was searched for.
-    let single = &singles[first].fit;
-    for pair in out.iter_mut().take(1).filter(|p| p.fit.objective < MUCH_BETTER * single.objective)
-    {
-        if !pair.fit.is_settled(bench, of) {
-            progress(0.93, "searching around the best pair");
-            let fit = search(bench, pair.fit.clone(), of);
-            pair.take_better(bench, fit, of);
-        }
+    let single = singles[first].fit.objective;
+    let open = |pair: &&mut Hypothesis| {
+        pair.fit.objective < MUCH_BETTER * single && !pair.fit.is_settled(bench, of)
+    };
+    if let Some(pair) = out.first_mut().filter(open) {
+        progress(0.93, "searching around the best pair");
+        pair.search(bench, of);
     }
     out
 }
