@@ -245,6 +245,7 @@ pub(super) mod tests {
             residuals: Vec::new(),
             objective: level,
             jacobian: None,
+            is_at_end: false,
         };
         Hypothesis { fit, level, look: Look::Fit }
     }

@@ -60,7 +60,9 @@ fn gap_json(d: &Diagnosis) -> Json {
         "recalibrated": d.gap.recalibrated,
         "with_effect": d.gap.with_effect,
         "sham_closed_fraction": d.gap.sham,
-        "closed_fraction": { "value": value, "lo": lo, "hi": hi },
+        "closed_fraction": {
+            "value": value, "lo": lo, "hi": hi, "on_held_out_runs": d.gap.closed_unseen,
+        },
         "held_out": d.gap.held_out.iter().map(file).collect::<Vec<_>>(),
     })
 }

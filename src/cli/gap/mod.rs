@@ -109,6 +109,9 @@ enum Command {
         /// Seed: the same one gives the same campaigns
         #[arg(long, default_value_t = 1)]
         seed: u64,
+        /// Folder for further runs of the same blocks, as `score --held-out` takes them
+        #[arg(long)]
+        further: Option<PathBuf>,
     },
     /// Make a campaign's folder from a laboratory's CSV files: columns, units, start and rate as a plan says
     Import {
@@ -183,8 +186,9 @@ pub fn run(arguments: &Arguments) -> Result<Done, Stop> {
             let settings = diagnose::settings(*seed, without);
             return diagnose::run(campaign, out, *jobs, settings, *quiet);
         }
-        Command::MakeSuite { out, template, count, seed } => {
-            suite::make(template.as_deref(), out, *count, *seed)?;
+        Command::MakeSuite { out, template, count, seed, further } => {
+            let folders = suite::Folders { out, further: further.as_deref() };
+            suite::make(template.as_deref(), folders, *count, *seed)?;
             eprintln!("{count} campaigns in {}", out.display());
         }
         Command::Import { plan, out, json } => {

@@ -10,7 +10,7 @@ use crate::gap::simulate::DATASHEET;
 /// The reader of campaign files: its documented fields are the format.
 const READER: &str = include_str!("../../gap/campaign/plan.rs");
 /// The campaign after which `tread gap make-suite` makes its own.
-const EXAMPLE: &str = include_str!("../../gap/campaign_template.toml");
+const EXAMPLE: &str = include_str!("../../gap/suite/campaign_template.toml");
 const SCHEMA: &str = include_str!("../../../docs/diagnosis.schema.json");
 
 /// A field of a structure, or a variant of an enumeration, as its source documents it.

@@ -3,7 +3,7 @@
 use super::best_cause;
 use crate::gap::decide::{self, Cause, Weighed, JUDGED};
 use crate::gap::fit::evaluate;
-use crate::gap::held_out;
+use crate::gap::held_out::{self, Paired};
 use crate::gap::hypotheses::{Fits, Hypothesis};
 use crate::gap::problem::{Bench, Residuals};
 
@@ -16,8 +16,10 @@ pub struct Gap {
     pub recalibrated: f64,
     /// G with the most probable effect.
     pub with_effect: f64,
-    /// Share of the closable gap that the effect closes: value, 5 % and 95 %.
+    /// Share of the closable gap that the effect is expected to close on further runs: value, 5 % and 95 %.
     pub closed: [f64; 3],
+    /// What it closes on the held-out runs alone.
+    pub closed_unseen: f64,
     /// The same of a sham: the median over the other causes that were judged.
     pub sham: f64,
     /// The runs, by index.
@@ -37,46 +39,80 @@ pub(super) fn at(bench: &Bench, hypothesis: &Hypothesis, of: &[usize]) -> Residu
     evaluate(bench, &hypothesis.fit.added, hypothesis.fit.x.clone(), of).residuals
 }
 
-/// The gap on the runs `judged`, and the closed fraction of every cause in `weighed` that is judged.
+/// The runs on which causes are judged.
+pub(super) struct Judged {
+    /// Those that no fit has seen; all where none is held out.
+    pub unseen: Vec<usize>,
+    /// Those that were fitted; none where none is held out.
+    pub seen: Vec<usize>,
+}
+
+/// Share of the closable gap that a cause closes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Closed {
+    /// On the runs that no fit has seen.
+    pub unseen: f64,
+    /// As expected on further runs ([`held_out::expected`]).
+    pub expected: f64,
+}
+
+/// The gap on the runs `judged`, and what every cause in `weighed` closes that is judged.
 pub(super) fn how_far(
     bench: &Bench,
     fits: &Fits,
     weighed: &[Weighed],
-    judged: &[usize],
+    judged: &Judged,
     seed: u64,
-) -> (Gap, Vec<Option<f64>>) {
-    let of = |h: &Hypothesis| held_out::squares(bench, &at(bench, h, judged), judged);
-    let nominal = evaluate(bench, &[], vec![0.0; bench.base_size()], judged).residuals;
-    let nominal = held_out::squares(bench, &nominal, judged);
+) -> (Gap, Vec<Option<Closed>>) {
+    let both = [&judged.unseen, &judged.seen];
+    let of = |h: &Hypothesis| both.map(|runs| held_out::squares(bench, &at(bench, h, runs), runs));
+    let nominal = evaluate(bench, &[], vec![0.0; bench.base_size()], &judged.unseen).residuals;
+    let nominal = held_out::squares(bench, &nominal, &judged.unseen);
     let base = of(&fits.base);
-    let best = best_cause(weighed);
-    let mut judged_so_far = 0;
-    let squares: Vec<Option<Vec<f64>>> = weighed
+    let paired = |with: [Vec<f64>; 2]| {
+        let [unseen, seen] = with;
+        let pair = |k: usize, after| Paired { before: base[k].clone(), after };
+        [pair(0, unseen), pair(1, seen)]
+    };
+    let judged_causes: Vec<&Cause> =
+        weighed.iter().map(|w| &w.cause).filter(|c| c.is_fitted()).take(JUDGED).collect();
+    let pairs: Vec<Option<[Paired; 2]>> = weighed
         .iter()
         .map(|w| {
-            let own = w.cause.is_fitted();
-            judged_so_far += usize::from(own);
-            (own && judged_so_far <= JUDGED).then(|| of(decide::fit_of(fits, &w.cause)))
+            let own = judged_causes.contains(&&w.cause);
+            own.then(|| paired(of(decide::fit_of(fits, &w.cause))))
         })
         .collect();
+    let closed = |[unseen, seen]: &[Paired; 2]| Closed {
+        unseen: unseen.closed(),
+        expected: held_out::expected(unseen, seen),
+    };
+    let closed: Vec<Option<Closed>> = pairs.iter().map(|p| p.as_ref().map(closed)).collect();
+    let best = best_cause(weighed);
     let place = weighed.iter().position(|w| w.cause == best);
-    let with = place.and_then(|k| squares[k].clone()).unwrap_or_else(|| base.clone());
-    let mut others: Vec<f64> = weighed
-        .iter()
-        .zip(&squares)
-        .filter(|(w, _)| w.cause != best && matches!(w.cause, Cause::Single(_)))
-        .filter_map(|(_, s)| s.as_ref().map(|s| held_out::closed(&base, s)))
-        .collect();
-    others.sort_by(f64::total_cmp);
-    let (lo, hi) = held_out::interval(&base, &with, seed);
+    let [unseen, seen] =
+        place.and_then(|k| pairs[k].clone()).unwrap_or_else(|| paired(base.clone()));
+    let (lo, hi) = held_out::interval(&unseen, &seen, seed);
     let gap = Gap {
         nominal: held_out::gap(&nominal),
-        recalibrated: held_out::gap(&base),
-        with_effect: held_out::gap(&with),
-        closed: [held_out::closed(&base, &with), lo, hi],
-        sham: others.get(others.len() / 2).copied().unwrap_or(0.0),
-        held_out: judged.to_vec(),
+        recalibrated: held_out::gap(&unseen.before),
+        with_effect: held_out::gap(&unseen.after),
+        closed: [held_out::expected(&unseen, &seen), lo, hi],
+        closed_unseen: unseen.closed(),
+        sham: sham(weighed, &closed, &best),
+        held_out: judged.unseen.clone(),
     };
-    let closed = squares.iter().map(|s| s.as_ref().map(|s| held_out::closed(&base, s))).collect();
     (gap, closed)
+}
+
+/// Median over the single effects but the best cause of what they close.
+fn sham(weighed: &[Weighed], closed: &[Option<Closed>], best: &Cause) -> f64 {
+    let mut others: Vec<f64> = weighed
+        .iter()
+        .zip(closed)
+        .filter(|(w, _)| w.cause != *best && matches!(w.cause, Cause::Single(_)))
+        .filter_map(|(_, closed)| closed.map(|c| c.expected))
+        .collect();
+    others.sort_by(f64::total_cmp);
+    others.get(others.len() / 2).copied().unwrap_or(0.0)
 }

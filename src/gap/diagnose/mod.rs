@@ -20,7 +20,7 @@ use super::second_look;
 use super::symmetry;
 use super::where_::{self, Cell};
 use crate::error::{Fault, Problem};
-use how_far::{at, how_far};
+use how_far::{at, how_far, Closed, Judged};
 use resolution::{detectable, indistinguishable};
 use std::path::Path;
 use std::time::Instant;
@@ -59,7 +59,7 @@ pub struct Diagnosis {
     pub decision: Decision,
     /// How far.
     pub gap: Gap,
-    /// Closed fraction of every cause in `weighed` that has a fit of its own.
+    /// Closed fraction to be expected on further runs, of every cause in `weighed` that is judged.
     pub closed: Vec<Option<f64>>,
     /// Where, before any effect is added.
     pub cells: Vec<Cell>,
@@ -106,12 +106,16 @@ pub fn diagnose(
     let modules = decide::modules(&bench, &fits);
     let (detectable, indistinguishable) =
         (detectable(&bench, &fits), indistinguishable(&bench, &fits));
-    let judged = if held.is_empty() { all.clone() } else { held.clone() };
+    let rest = held_out::to_fit(&bench.runs, &held, Look::Whole);
+    let judged = if held.is_empty() {
+        Judged { unseen: all.clone(), seen: Vec::new() }
+    } else {
+        Judged { unseen: held, seen: rest.clone() }
+    };
     let mut whole = Bench::new(&campaign, bench.specs, Look::Whole)?;
     whole.measure_floor(&bench.params(&[], &fits.base.fit.x), &all)?;
     if settings.method.recalibrate {
-        let seen = held_out::to_fit(&bench.runs, &held, Look::Whole);
-        polish::polish(&whole, &mut fits, &first_look, &seen, progress);
+        polish::polish(&whole, &mut fits, &first_look, &rest, progress);
     }
     progress(0.99, "judging the held-out runs");
     let (weighed, gap, closed) = judge(&whole, &fits, first_look, &judged, settings);
@@ -167,19 +171,22 @@ fn judge(
     whole: &Bench,
     fits: &Fits,
     first_look: Vec<Weighed>,
-    judged: &[usize],
+    judged: &Judged,
     settings: Settings,
 ) -> (Vec<Weighed>, Gap, Vec<Option<f64>>) {
+    let expected =
+        |closed: Vec<Option<Closed>>| closed.into_iter().map(|c| c.map(|c| c.expected)).collect();
     let (gap, closed) = how_far(whole, fits, &first_look, judged, settings.seed);
     if !settings.hold_out {
-        return (first_look, gap, closed);
+        return (first_look, gap, expected(closed));
     }
-    let weighed = second_look::second_look(fits, &first_look, &closed);
+    let unseen: Vec<Option<f64>> = closed.iter().map(|c| c.map(|c| c.unseen)).collect();
+    let weighed = second_look::second_look(fits, &first_look, &unseen);
     if weighed.iter().zip(&first_look).all(|(now, then)| now.cause == then.cause) {
-        return (weighed, gap, closed);
+        return (weighed, gap, expected(closed));
     }
     let (gap, closed) = how_far(whole, fits, &weighed, judged, settings.seed);
-    (weighed, gap, closed)
+    (weighed, gap, expected(closed))
 }
 
 /// The most probable cause with a fit of its own.

@@ -11,7 +11,8 @@ pub fn verdict(d: &Diagnosis) -> String {
         "On runs that no fit has seen the datasheet model is {:.1} times the floor off, the recalibrated one {:.1}.",
         gap.nominal, gap.recalibrated
     );
-    let closing = format!("closes {} of what recalibration leaves", gap.closed_in_words());
+    let closing =
+        format!("is expected to close {} of what recalibration leaves", gap.closed_in_words());
     let names = d.decision.effects.join(" + ");
     match d.decision.kind {
         Kind::None => format!("{opening} No gap that an effect would be needed for (P = {top:.2})."),

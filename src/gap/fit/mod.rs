@@ -33,6 +33,8 @@ pub struct Fit {
     pub objective: f64,
     /// Jacobian of the fitted residuals, run after run; columns are parameters.
     pub jacobian: Option<DMatrix<f64>>,
+    /// Has [`to_the_end`] ended here?
+    pub is_at_end: bool,
 }
 
 impl Fit {
@@ -80,15 +82,17 @@ pub const FINE: [Effort; 1] = [Effort { steps: 4, refresh: 4, view: View::PLAIN 
 /// Level from which on an optimum is good.
 pub const SETTLED: f64 = 0.8;
 
-/// Rounds, so many at most, until one brings next to nothing or leaves a good optimum.
+/// Rounds, so many at most, until one brings next to nothing or leaves a good optimum; none from where they have ended
+/// before.
 pub fn to_the_end(bench: &Bench, mut fit: Fit, of: &[usize], rounds: usize) -> Fit {
     for _ in 0..rounds {
+        if fit.is_at_end {
+            break;
+        }
         let before = fit.objective;
         let found = approach(bench, Fit { jacobian: None, ..fit.clone() }, of, &FINE);
         fit = fit.or_better(found);
-        if fit.is_settled(bench, of) || fit.objective > ENOUGH * before {
-            break;
-        }
+        fit.is_at_end = fit.is_settled(bench, of) || fit.objective > ENOUGH * before;
     }
     fit
 }
@@ -146,7 +150,7 @@ pub fn evaluate_all(
     let all = bench.residuals(added, &points, of);
     let fit = |(x, residuals): (Vec<f64>, Residuals)| {
         let objective = objective(bench, &x, &residuals, View::PLAIN);
-        Fit { added: added.to_vec(), x, residuals, objective, jacobian: None }
+        Fit { added: added.to_vec(), x, residuals, objective, jacobian: None, is_at_end: false }
     };
     points.into_iter().zip(all).map(fit).collect()
 }

@@ -98,7 +98,7 @@ pub(super) fn best_possible(singles: &[Hypothesis], possible: &[bool]) -> Vec<us
 fn ruled_out(bench: &Bench, base: &Fit, choice: Choice, of: &[usize]) -> Hypothesis {
     let added = vec![choice];
     let x = faint(&bench.coordinates(&added), &base.x, NEXT_TO_NONE);
-    level(bench, Fit { added, x, jacobian: None, ..base.clone() }, of)
+    level(bench, Fit { added, x, jacobian: None, is_at_end: false, ..base.clone() }, of)
 }
 
 /// One form of an effect from the base model's optimum, with the base model's Jacobian.

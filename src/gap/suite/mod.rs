@@ -4,7 +4,10 @@
 //! datasheet, and use a functional form other than the one that the first guess of an effect uses;
 //! diagnosed `--without families`, no form in them is known to the diagnosis.
 
-use super::campaign::{self, Plan, Record, CHANNELS};
+mod further;
+mod measured;
+
+use super::campaign::{self, Plan};
 use super::json::changes;
 use super::noise::Noise;
 use super::predict;
@@ -14,6 +17,7 @@ use super::simulate::{nominal, set, Simulator, DATASHEET, FINE};
 use crate::effects::{fit_specs, Spread};
 use crate::error::Fault;
 use crate::params::Params;
+use measured::{blur, distort};
 use rayon::prelude::*;
 use serde_json::{json, Map, Value as Json};
 use std::path::Path;
@@ -76,12 +80,26 @@ fn truth(number: usize) -> Truth {
     }
 }
 
-/// Writes `count` campaigns with labels and held-out runs into `out`; a seed gives the same campaigns
-/// always.
+/// Where a suite goes.
+#[derive(Clone, Copy, Debug)]
+pub struct Folders<'a> {
+    /// Campaigns and labels.
+    pub out: &'a Path,
+    /// Further runs of the same blocks, if they are asked for.
+    pub further: Option<&'a Path>,
+}
+
+/// Writes `count` campaigns with labels and further runs of the same blocks into `folders`; a seed gives the same
+/// campaigns always.
 ///
 /// # Errors
 /// Files that cannot be written, and what stops the block.
-pub fn make(template: Option<&Path>, out: &Path, count: usize, seed: u64) -> Result<(), Fault> {
+pub fn make(
+    template: Option<&Path>,
+    folders: Folders<'_>,
+    count: usize,
+    seed: u64,
+) -> Result<(), Fault> {
     let (plan, text) = match template {
         Some(path) => {
             let text = std::fs::read_to_string(path).map_err(|e| Fault::file(path, &e))?;
@@ -92,9 +110,9 @@ pub fn make(template: Option<&Path>, out: &Path, count: usize, seed: u64) -> Res
         }
     };
     let labels: Result<Vec<(String, Json)>, Fault> =
-        (0..count).into_par_iter().map(|number| one(&plan, &text, out, number, seed)).collect();
+        (0..count).into_par_iter().map(|number| one(&plan, &text, folders, number, seed)).collect();
     let labels: Map<String, Json> = labels?.into_iter().collect();
-    let target = out.join("labels.json");
+    let target = folders.out.join("labels.json");
     let text = serde_json::to_string_pretty(&Json::Object(labels)).unwrap_or_default();
     std::fs::write(&target, text).map_err(|e| Fault::file(&target, &e))
 }
@@ -103,7 +121,7 @@ pub fn make(template: Option<&Path>, out: &Path, count: usize, seed: u64) -> Res
 fn one(
     template: &Plan,
     text: &str,
-    out: &Path,
+    folders: Folders<'_>,
     number: usize,
     seed: u64,
 ) -> Result<(String, Json), Fault> {
@@ -117,16 +135,23 @@ fn one(
     let mut label = add(truth, severity, &mut params, &mut noise);
     label["parameters"] = changes(&params, &nominal(&plan));
     let simulator = Simulator::cut(&plan, FINE)?.rippled(ripple(truth, severity));
-    let folder = out.join(&id);
-    for spec in &plan.runs {
-        let mut record = simulator.run(&params, spec, spec.duration_s)?;
-        distort(truth, severity, &mut record);
-        blur(&plan, &mut record, &mut noise);
-        let target = folder.join(&spec.file);
-        predict::write(&target, &plan, spec, &record).map_err(|e| Fault::file(&target, &e))?;
+    let mut write = |folder: &Path, plan: &Plan, text: String| -> Result<(), Fault> {
+        for spec in &plan.runs {
+            let mut record = simulator.run(&params, spec, spec.duration_s)?;
+            distort(truth, severity, &mut record);
+            blur(plan, &mut record, &mut noise);
+            let target = folder.join(&spec.file);
+            predict::write(&target, plan, spec, &record).map_err(|e| Fault::file(&target, &e))?;
+        }
+        let target = folder.join("campaign.toml");
+        std::fs::write(&target, text).map_err(|e| Fault::file(&target, &e))
+    };
+    let text = titled(text, &id, &plan);
+    write(&folders.out.join(&id), &plan, text.clone())?;
+    if let Some(further) = folders.further {
+        let (plan, text) = further::of(&plan, &text);
+        write(&further.join(&id), &plan, text)?;
     }
-    let target = folder.join("campaign.toml");
-    std::fs::write(&target, titled(text, &id, &plan)).map_err(|e| Fault::file(&target, &e))?;
     Ok((id, label))
 }
 
@@ -200,58 +225,4 @@ fn ripple(truth: Truth, severity: f64) -> Option<Ripple> {
         Truth::LoadRipple => Some(Ripple { speed: 0.0, load: share_off(severity) }),
         _ => None,
     }
-}
-
-/// What is wrong with the measurement itself.
-fn distort(truth: Truth, severity: f64, record: &mut Record) {
-    let share = 1.0 + share_off(severity);
-    match truth {
-        Truth::Gain => {
-            if let Some(force) = record.channel[campaign::FRICTION].as_mut() {
-                force.iter_mut().for_each(|f| *f *= share);
-            }
-        }
-        Truth::Clock => {
-            for column in record.channel.iter_mut().flatten() {
-                *column = slowed(column, share);
-            }
-        }
-        Truth::CrossTalk => {
-            let [friction, normal, ..] = &mut record.channel;
-            let pairs = friction.iter().flatten().zip(normal.iter_mut().flatten());
-            pairs.for_each(|(f, n)| *n += (share - 1.0) * f);
-        }
-        Truth::Drift => {
-            let count = record.time.len() as f64;
-            let full = DRIFT * (1.0 + severity);
-            for column in record.channel[campaign::FRICTION].iter_mut() {
-                column.iter_mut().enumerate().for_each(|(i, f)| *f += full * i as f64 / count);
-            }
-        }
-        Truth::None | Truth::Effect(_) | Truth::Pair(_) => {}
-        Truth::SpeedRipple | Truth::LoadRipple => {}
-    }
-}
-
-/// Drift of the zero of the friction channel over a run at severity 1 \[N\].
-const DRIFT: f64 = 3.0;
-
-/// The column as a clock sees it that is slow by the factor `share`; the end stands still.
-fn slowed(column: &[f64], share: f64) -> Vec<f64> {
-    let value = |i: usize| {
-        let at = i as f64 * share;
-        let k = (at as usize).min(column.len() - 1);
-        let next = (k + 1).min(column.len() - 1);
-        column[k] + (at - k as f64).min(1.0) * (column[next] - column[k])
-    };
-    (0..column.len()).map(value).collect()
-}
-
-/// Adds the noise of the channels.
-fn blur(plan: &Plan, record: &mut Record, noise: &mut Noise) {
-    for (column, std) in record.channel.iter_mut().zip(plan.noise) {
-        let (Some(column), Some(std)) = (column, std) else { continue };
-        column.iter_mut().for_each(|v| *v += std * noise.normal());
-    }
-    debug_assert_eq!(CHANNELS.len(), record.channel.len());
 }
