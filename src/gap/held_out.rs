@@ -109,22 +109,39 @@ impl Paired {
 /// Weight of unseen runs in what further runs are told to do: 1 - 1/e.
 const UNSEEN: f64 = 0.632;
 
-/// The closed fraction to be expected on further runs of the block: 0.632 of what the `unseen` runs say and the rest of
-/// what the fitted runs, `seen`, say (B. Efron, J. Am. Stat. Assoc. 78, 1983, 316). The former is right on average, but
-/// of four runs that jump between limit cycles it scatters; the latter scatters little and is too good.
-pub fn expected(unseen: &Paired, seen: &Paired) -> f64 {
-    if seen.is_open() {
-        UNSEEN * unseen.closed() + (1.0 - UNSEEN) * seen.closed()
-    } else {
-        unseen.closed()
+/// How a cause does on the two kinds of runs that a campaign has.
+#[derive(Clone, Debug)]
+pub struct Shrinkage {
+    /// On runs that no fit has seen.
+    pub unseen: Paired,
+    /// On those that were fitted; none where none is held out.
+    pub seen: Paired,
+}
+
+impl Shrinkage {
+    /// The closed fraction to be expected on further runs of the block: 0.632 of what the unseen runs say and the rest
+    /// of what the fitted ones say (B. Efron, J. Am. Stat. Assoc. 78, 1983, 316). The former is right on average, but of
+    /// four runs that jump between limit cycles it scatters; the latter scatters little and is too good.
+    pub fn expected(&self) -> f64 {
+        if self.seen.is_open() {
+            UNSEEN * self.unseen.closed() + (1.0 - UNSEEN) * self.seen.closed()
+        } else {
+            self.unseen.closed()
+        }
+    }
+
+    /// Interval of [`Self::expected`] (5 % to 95 %): that of the unseen runs, stretched to hold the value. Fitted runs do
+    /// not narrow it, as what they say is too good by an unknown amount.
+    pub fn interval(&self, seed: u64) -> (f64, f64) {
+        let (lo, hi) = interval(&self.unseen.before, &self.unseen.after, seed);
+        (lo.min(self.expected()), hi.max(self.expected()))
     }
 }
 
-/// Interval of [`expected`] (5 % to 95 %): that of the unseen runs by a paired bootstrap over them, widened for their
-/// small number and stretched to hold the value. Fitted runs do not narrow it: what they say is too good by an unknown
-/// amount.
-pub fn interval(unseen: &Paired, seen: &Paired, seed: u64) -> (f64, f64) {
-    let count = unseen.before.len();
+/// Interval of [`closed`] (5 % to 95 %) by a paired bootstrap over the runs, widened for their
+/// small number.
+fn interval(before: &[f64], after: &[f64], seed: u64) -> (f64, f64) {
+    let count = before.len();
     if count < 2 {
         return (-1.0, 1.0);
     }
@@ -139,14 +156,13 @@ pub fn interval(unseen: &Paired, seen: &Paired, seed: u64) -> (f64, f64) {
         .map(|_| {
             let draw: Vec<usize> = (0..count).map(|_| next()).collect();
             let pick = |from: &[f64]| draw.iter().map(|i| from[*i]).collect::<Vec<_>>();
-            closed(&pick(&unseen.before), &pick(&unseen.after))
+            closed(&pick(before), &pick(after))
         })
         .collect();
     values.sort_by(f64::total_cmp);
-    let (value, told) = (unseen.closed(), expected(unseen, seen));
+    let value = closed(before, after);
     let wide = |end: f64| (value + few(count) * (end - value)).clamp(-1.0, 1.0);
-    let (lo, hi) = (wide(values[SAMPLES / 20]), wide(values[SAMPLES - SAMPLES / 20 - 1]));
-    (lo.min(told), hi.max(told))
+    (wide(values[SAMPLES / 20]), wide(values[SAMPLES - SAMPLES / 20 - 1]))
 }
 
 /// By how much the percentiles of a bootstrap over `count` runs are too narrow: it divides by n instead of n − 1, and
@@ -181,28 +197,29 @@ mod tests {
         assert!((few(4) - 1.652).abs() < 1e-3, "{}", few(4));
     }
 
-    fn paired(before: [f64; 3], after: [f64; 3]) -> Paired {
-        Paired { before: before.to_vec(), after: after.to_vec() }
+    fn shrinkage(unseen: [[f64; 3]; 2], seen: [[f64; 3]; 2]) -> Shrinkage {
+        let paired = |[b, a]: [[f64; 3]; 2]| Paired { before: b.to_vec(), after: a.to_vec() };
+        Shrinkage { unseen: paired(unseen), seen: paired(seen) }
     }
 
     #[test]
     fn fitted_runs_have_a_say_of_a_bit_more_than_a_third() {
         // (11 - 6)/(11 - 1) = 0.5 and 1 by hand; 0.632·0.5 + 0.368.
-        let unseen = paired([11.0; 3], [6.0; 3]);
-        assert!((expected(&unseen, &paired([5.0; 3], [0.5; 3])) - 0.684).abs() < 1e-12);
+        let half = [[11.0; 3], [6.0; 3]];
+        let both = shrinkage(half, [[5.0; 3], [0.5; 3]]);
+        assert!((both.expected() - 0.684).abs() < 1e-12);
         // Where they leave nothing to close, they say nothing.
-        assert!((expected(&unseen, &paired([0.9; 3], [0.5; 3])) - 0.5).abs() < 1e-12);
+        assert!((shrinkage(half, [[0.9; 3], [0.5; 3]]).expected() - 0.5).abs() < 1e-12);
+        // The bootstrap of equal runs says [0.5, 0.5]; it is stretched to the value.
+        let (lo, hi) = both.interval(7);
+        assert!((lo - 0.5).abs() < 1e-12 && (hi - 0.684).abs() < 1e-12, "{lo} {hi}");
     }
 
     #[test]
     fn the_interval_holds_the_value() {
-        let unseen = paired([9.0, 16.0, 12.0], [2.0, 5.0, 1.5]);
-        let seen = paired([8.0, 14.0, 11.0], [1.0, 3.0, 1.5]);
-        let (lo, hi) = interval(&unseen, &seen, 7);
-        let value = expected(&unseen, &seen);
-        assert!(lo < value && value < hi, "{lo} {value} {hi}");
-        // Of unseen runs that all close exactly a half the bootstrap says [0.5, 0.5]; the value is 0.684.
-        let (lo, hi) = interval(&paired([11.0; 3], [6.0; 3]), &paired([5.0; 3], [0.5; 3]), 7);
-        assert!((lo - 0.5).abs() < 1e-12 && (hi - 0.684).abs() < 1e-12, "{lo} {hi}");
+        let (before, after) = ([9.0, 16.0, 12.0], [2.0, 5.0, 1.5]);
+        let (lo, hi) = interval(&before, &after, 7);
+        let value = closed(&before, &after);
+        assert!(lo <= value && value <= hi, "{lo} {value} {hi}");
     }
 }

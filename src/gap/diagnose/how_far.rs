@@ -3,7 +3,7 @@
 use super::best_cause;
 use crate::gap::decide::{self, Cause, Weighed, JUDGED};
 use crate::gap::fit::evaluate;
-use crate::gap::held_out::{self, Paired};
+use crate::gap::held_out::{self, Paired, Shrinkage};
 use crate::gap::hypotheses::{Fits, Hypothesis};
 use crate::gap::problem::{Bench, Residuals};
 
@@ -47,71 +47,54 @@ pub(super) struct Judged {
     pub seen: Vec<usize>,
 }
 
-/// Share of the closable gap that a cause closes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Closed {
-    /// On the runs that no fit has seen.
-    pub unseen: f64,
-    /// As expected on further runs ([`held_out::expected`]).
-    pub expected: f64,
-}
-
-/// The gap on the runs `judged`, and what every cause in `weighed` closes that is judged.
+/// The gap on the runs `judged`, and how every cause in `weighed` does on them that is judged.
 pub(super) fn how_far(
     bench: &Bench,
     fits: &Fits,
     weighed: &[Weighed],
     judged: &Judged,
     seed: u64,
-) -> (Gap, Vec<Option<Closed>>) {
+) -> (Gap, Vec<Option<Shrinkage>>) {
     let both = [&judged.unseen, &judged.seen];
     let of = |h: &Hypothesis| both.map(|runs| held_out::squares(bench, &at(bench, h, runs), runs));
     let nominal = evaluate(bench, &[], vec![0.0; bench.base_size()], &judged.unseen).residuals;
     let nominal = held_out::squares(bench, &nominal, &judged.unseen);
     let base = of(&fits.base);
-    let paired = |with: [Vec<f64>; 2]| {
-        let [unseen, seen] = with;
+    let against_base = |[unseen, seen]: [Vec<f64>; 2]| {
         let pair = |k: usize, after| Paired { before: base[k].clone(), after };
-        [pair(0, unseen), pair(1, seen)]
+        Shrinkage { unseen: pair(0, unseen), seen: pair(1, seen) }
     };
-    let judged_causes: Vec<&Cause> =
+    let fitted: Vec<&Cause> =
         weighed.iter().map(|w| &w.cause).filter(|c| c.is_fitted()).take(JUDGED).collect();
-    let pairs: Vec<Option<[Paired; 2]>> = weighed
-        .iter()
-        .map(|w| {
-            let own = judged_causes.contains(&&w.cause);
-            own.then(|| paired(of(decide::fit_of(fits, &w.cause))))
-        })
-        .collect();
-    let closed = |[unseen, seen]: &[Paired; 2]| Closed {
-        unseen: unseen.closed(),
-        expected: held_out::expected(unseen, seen),
+    let judge = |w: &Weighed| {
+        let is_judged = fitted.contains(&&w.cause);
+        is_judged.then(|| against_base(of(decide::fit_of(fits, &w.cause))))
     };
-    let closed: Vec<Option<Closed>> = pairs.iter().map(|p| p.as_ref().map(closed)).collect();
+    let shrinkages: Vec<Option<Shrinkage>> = weighed.iter().map(judge).collect();
     let best = best_cause(weighed);
     let place = weighed.iter().position(|w| w.cause == best);
-    let [unseen, seen] =
-        place.and_then(|k| pairs[k].clone()).unwrap_or_else(|| paired(base.clone()));
-    let (lo, hi) = held_out::interval(&unseen, &seen, seed);
+    let found =
+        place.and_then(|k| shrinkages[k].clone()).unwrap_or_else(|| against_base(base.clone()));
+    let (lo, hi) = found.interval(seed);
     let gap = Gap {
         nominal: held_out::gap(&nominal),
-        recalibrated: held_out::gap(&unseen.before),
-        with_effect: held_out::gap(&unseen.after),
-        closed: [held_out::expected(&unseen, &seen), lo, hi],
-        closed_unseen: unseen.closed(),
-        sham: sham(weighed, &closed, &best),
+        recalibrated: held_out::gap(&found.unseen.before),
+        with_effect: held_out::gap(&found.unseen.after),
+        closed: [found.expected(), lo, hi],
+        closed_unseen: found.unseen.closed(),
+        sham: sham(weighed, &shrinkages, &best),
         held_out: judged.unseen.clone(),
     };
-    (gap, closed)
+    (gap, shrinkages)
 }
 
 /// Median over the single effects but the best cause of what they close.
-fn sham(weighed: &[Weighed], closed: &[Option<Closed>], best: &Cause) -> f64 {
+fn sham(weighed: &[Weighed], shrinkages: &[Option<Shrinkage>], best: &Cause) -> f64 {
     let mut others: Vec<f64> = weighed
         .iter()
-        .zip(closed)
+        .zip(shrinkages)
         .filter(|(w, _)| w.cause != *best && matches!(w.cause, Cause::Single(_)))
-        .filter_map(|(_, closed)| closed.map(|c| c.expected))
+        .filter_map(|(_, found)| found.as_ref().map(Shrinkage::expected))
         .collect();
     others.sort_by(f64::total_cmp);
     others.get(others.len() / 2).copied().unwrap_or(0.0)

@@ -12,7 +12,7 @@ pub use verdict::verdict;
 use super::campaign::Campaign;
 use super::decide::{self, Cause, Decision, Weighed};
 use super::guess::{self, Guess};
-use super::held_out;
+use super::held_out::{self, Shrinkage};
 use super::hypotheses::{self, Fits, Method};
 use super::polish;
 use super::problem::{Bench, Look};
@@ -20,7 +20,7 @@ use super::second_look;
 use super::symmetry;
 use super::where_::{self, Cell};
 use crate::error::{Fault, Problem};
-use how_far::{at, how_far, Closed, Judged};
+use how_far::{at, how_far, Judged};
 use resolution::{detectable, indistinguishable};
 use std::path::Path;
 use std::time::Instant;
@@ -174,19 +174,21 @@ fn judge(
     judged: &Judged,
     settings: Settings,
 ) -> (Vec<Weighed>, Gap, Vec<Option<f64>>) {
-    let expected =
-        |closed: Vec<Option<Closed>>| closed.into_iter().map(|c| c.map(|c| c.expected)).collect();
-    let (gap, closed) = how_far(whole, fits, &first_look, judged, settings.seed);
+    let expected = |all: Vec<Option<Shrinkage>>| {
+        all.iter().map(|s| s.as_ref().map(Shrinkage::expected)).collect()
+    };
+    let (gap, shrinkages) = how_far(whole, fits, &first_look, judged, settings.seed);
     if !settings.hold_out {
-        return (first_look, gap, expected(closed));
+        return (first_look, gap, expected(shrinkages));
     }
-    let unseen: Vec<Option<f64>> = closed.iter().map(|c| c.map(|c| c.unseen)).collect();
+    let unseen: Vec<Option<f64>> =
+        shrinkages.iter().map(|s| s.as_ref().map(|s| s.unseen.closed())).collect();
     let weighed = second_look::second_look(fits, &first_look, &unseen);
     if weighed.iter().zip(&first_look).all(|(now, then)| now.cause == then.cause) {
-        return (weighed, gap, expected(closed));
+        return (weighed, gap, expected(shrinkages));
     }
-    let (gap, closed) = how_far(whole, fits, &weighed, judged, settings.seed);
-    (weighed, gap, expected(closed))
+    let (gap, shrinkages) = how_far(whole, fits, &weighed, judged, settings.seed);
+    (weighed, gap, expected(shrinkages))
 }
 
 /// The most probable cause with a fit of its own.
