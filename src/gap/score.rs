@@ -1,6 +1,7 @@
 //! Scores answers against labels.
 
 use crate::error::Fault;
+use crate::metrics::median;
 use serde_json::{json, Value as Json};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -145,9 +146,7 @@ pub fn figures(cases: &[Case]) -> Json {
     let all: Vec<&Case> = cases.iter().collect();
     let strong: Vec<&Case> =
         cases.iter().filter(|c| c.right() && !c.truth.is_empty() && c.severity >= 1.5).collect();
-    let mut closed: Vec<f64> =
-        strong.iter().filter(|c| !c.is_unknown()).map(|c| c.closed).collect();
-    closed.sort_by(f64::total_cmp);
+    let closed = strong.iter().filter(|c| !c.is_unknown()).map(|c| c.closed).collect();
     json!({
         "cases": cases.len(),
         "top1_singles": share(&singles, Case::right),
@@ -161,7 +160,7 @@ pub fn figures(cases: &[Case]) -> Json {
         "wrong_and_confident": share(&all, |c| {
             !c.right() && c.top.1 >= 0.8 && !c.top.0.is_empty() && c.top.0 != ["unknown"]
         }),
-        "median_closed_fraction": closed.get(closed.len() / 2),
+        "median_closed_fraction": median(closed),
         "ece": ece(cases),
         "reliability": reliability(cases),
         "brier": mean(cases.iter().map(|c| (1.0 - c.on_truth).powi(2)).collect()),

@@ -6,6 +6,7 @@ use super::held_out;
 use super::json;
 use super::problem::{Bench, Look};
 use crate::error::Fault;
+use crate::metrics::median;
 use serde_json::{json, Value as Json};
 use std::path::Path;
 
@@ -54,10 +55,9 @@ pub fn closed(id: &str, answer: &Path, campaign: &Path) -> Result<Closed, Fault>
 
 /// Median of |told - on further runs|, `None` without campaigns, and how many fractions lie inside their interval.
 fn errors(all: &[Closed]) -> (Option<f64>, usize) {
-    let mut errors: Vec<f64> = all.iter().map(|c| (c.told - c.actual).abs()).collect();
-    errors.sort_by(f64::total_cmp);
+    let errors = all.iter().map(|c| (c.told - c.actual).abs()).collect();
     let inside = |c: &&Closed| c.interval[0] <= c.actual && c.actual <= c.interval[1];
-    (errors.get(errors.len() / 2).copied(), all.iter().filter(inside).count())
+    (median(errors), all.iter().filter(inside).count())
 }
 
 /// A table for people, and the median error.

@@ -1,9 +1,11 @@
 //! What a sliding run amounts to: stick-slip frequency, amplitude, mean friction, stick fraction.
 
 mod frequency;
+mod median;
 mod settle;
 
 pub use frequency::{frequency, Periodicity};
+pub use median::median;
 pub use settle::settled_from;
 
 /// Traces of a sliding run at rising times; all of the same length.

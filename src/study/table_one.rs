@@ -13,6 +13,7 @@ use super::report::{Study, Verdict};
 use super::start::Start;
 use crate::block::Reductions;
 use crate::error::Fault;
+use crate::metrics::median;
 use crate::params::Params;
 
 /// The table and how well it fits.
@@ -40,12 +41,7 @@ impl TableOne {
     /// Median of the magnitudes of the relative errors over the legible frequencies; a cell that is
     /// silent where the paper's is not counts as 100 %.
     pub fn median_error(&self) -> f64 {
-        let mut errors = self.errors();
-        errors.sort_by(f64::total_cmp);
-        match errors.len() {
-            0 => 0.0,
-            n => 0.5 * (errors[n / 2] + errors[(n - 1) / 2]),
-        }
+        median(self.errors()).unwrap_or(0.0)
     }
 
     /// Largest error.

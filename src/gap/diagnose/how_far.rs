@@ -6,6 +6,7 @@ use crate::gap::fit::evaluate;
 use crate::gap::held_out::{self, Paired, Shrinkage};
 use crate::gap::hypotheses::{Fits, Hypothesis};
 use crate::gap::problem::{Bench, Residuals};
+use crate::metrics::median;
 
 /// The gap on the held-out runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,12 +91,11 @@ pub(super) fn how_far(
 
 /// Median over the single effects but the best cause of what they close.
 fn sham(weighed: &[Weighed], shrinkages: &[Option<Shrinkage>], best: &Cause) -> f64 {
-    let mut others: Vec<f64> = weighed
+    let others = weighed
         .iter()
         .zip(shrinkages)
         .filter(|(w, _)| w.cause != *best && matches!(w.cause, Cause::Single(_)))
         .filter_map(|(_, found)| found.as_ref().map(Shrinkage::expected))
         .collect();
-    others.sort_by(f64::total_cmp);
-    others.get(others.len() / 2).copied().unwrap_or(0.0)
+    median(others).unwrap_or(0.0)
 }
