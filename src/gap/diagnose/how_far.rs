@@ -35,9 +35,13 @@ impl Gap {
     }
 }
 
-/// Residuals of a hypothesis on the runs `of`.
+/// Residuals of a hypothesis on the runs `of`; those of its fit where `bench` has fitted it there.
 pub(super) fn at(bench: &Bench, hypothesis: &Hypothesis, of: &[usize]) -> Residuals {
-    evaluate(bench, &hypothesis.fit.added, hypothesis.fit.x.clone(), of).residuals
+    let Hypothesis { fit, look, .. } = hypothesis;
+    if *look == bench.look() && of.iter().all(|r| !fit.residuals[*r].is_empty()) {
+        return fit.residuals.clone();
+    }
+    evaluate(bench, &fit.added, fit.x.clone(), of).residuals
 }
 
 /// The runs on which causes are judged.

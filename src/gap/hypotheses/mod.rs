@@ -34,8 +34,7 @@ impl Hypothesis {
 
     /// Fits on, to where it no longer gets better: effects that share a valley leave it late.
     fn deepen(&mut self, bench: &Bench, of: &[usize]) {
-        let fit = fit::to_the_end(bench, self.fit.clone(), of, ROUNDS);
-        self.take_better(bench, fit, of);
+        *self = level(bench, fit::to_the_end(bench, self.fit.clone(), of, ROUNDS), of);
     }
 
     /// Goes to the best place that a search around it finds.

@@ -43,11 +43,10 @@ fn flags(d: &Diagnosis, out: &mut String) {
 /// How far: G of datasheet, recalibrated model, model with the effect, and the floor.
 fn ladder(d: &Diagnosis, out: &mut String) {
     let gap = &d.gap;
-    let closes = format!("closes {}", gap.closed_in_words());
     let rows = [
         ("datasheet", gap.nominal, String::new()),
         ("recalibrated", gap.recalibrated, String::new()),
-        ("with the effect", gap.with_effect, closes),
+        ("with the effect", gap.with_effect, format!("closes {}", gap.closed_in_words())),
         ("floor", 1.0, "noise and error of the method".to_string()),
     ];
     let rows: Vec<(String, f64, String)> = rows
